@@ -1,5 +1,5 @@
-// Every kernel of the engine by itself, on cubes whose plans are known beforehand. Bytes are those that must move at least;
-// end values, side tables and plan tables stay in cache and do not count.
+// Every kernel of the engine by itself, on cubes whose plans are known beforehand. Bytes are those that must move at
+// least; end values, side tables and plan tables stay in cache and do not count.
 //
 //   line_parameters/<axis>                  arc-length fractions of all nodes along one axis    32 bytes per node
 //   volume/<axis>/<law>/<known sides>       the pass over the volume, in place        48 bytes, 8 per line parameter
@@ -12,8 +12,8 @@
 //   slip_ends/<surface>                     end values of a finalize pass            sizes of its tables, 48 bytes
 //   apply                                   all of it through the Morpher             as the volume pass
 //
-// Axes are those of memory: i lines run along it. ".../many_apart" and ".../many_joined" are 512 cubes (8 in the smallest
-// size), each a block of its own or all one block. Nodes are those that the kernel writes.
+// Axes are those of memory: i lines run along it. ".../many_apart" and ".../many_joined" are 512 cubes (8 in the
+// smallest size), each a block of its own or all one block. Nodes are those that the kernel writes.
 #include "bench.hpp"
 #include "cubes.hpp"
 #include "last_made.hpp"
@@ -57,7 +57,8 @@ struct OnCubes {
   }
 };
 
-// -------------------------------------------------------------------------------------- kernels with tables of their own
+// -------------------------------------------------------------------------------------- kernels with tables of their
+// own
 
 /// One cube as one chain along an axis; every node wants its parameter.
 struct LineParameters {
@@ -90,8 +91,8 @@ struct LineParameters {
   }
 };
 
-/// Nodes all over a sector of a surface of revolution (as a profile or as facets), or of a plane, that would leave it by a
-/// little.
+/// Nodes all over a sector of a surface of revolution (as a profile or as facets), or of a plane, that would leave it
+/// by a little.
 struct SlipEnds {
   SlipKind kind;
 

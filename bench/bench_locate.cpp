@@ -1,5 +1,5 @@
-// Cost of finding points in an unstructured mesh: a lattice of hexahedra, or of tetrahedra (six to a cell), whose cells grow
-// along one axis; "nodes" counts the elements, and the points, of which there are as many.
+// Cost of finding points in an unstructured mesh: a lattice of hexahedra, or of tetrahedra (six to a cell), whose cells
+// grow along one axis; "nodes" counts the elements, and the points, of which there are as many.
 //
 //   build_locator        sorting the elements and boxes over them
 //   locate_inside        points of a lattice that fits nowhere, in no order
@@ -7,11 +7,11 @@
 //   interpolation_rows   weights of the corner nodes, on the host
 //
 // Model, bytes per element or point. Build: keys and numbers written, then read twice and written once in each of eight
-// passes (12 + 8 * 32), corners twice (2 * (n (4 + 24) + 9)), boxes written (27) and read (27); n: corners. Locate: the same
-// sort (12 + 8 * 32), the point (24, four times: its key, put in order, searched), its place (44), and, as neighbours share
-// them, boxes, corners and coordinates once per point (27 + n (4 + 24)). Flops: about 12 for each of 130 boxes that a point
-// is compared with, four at a time, and 60 (tetrahedra) or 800 (hexahedra) for each of two to eight elements: arithmetic and
-// waiting for caches set the time.
+// passes (12 + 8 * 32), corners twice (2 * (n (4 + 24) + 9)), boxes written (27) and read (27); n: corners. Locate: the
+// same sort (12 + 8 * 32), the point (24, four times: its key, put in order, searched), its place (44), and, as
+// neighbours share them, boxes, corners and coordinates once per point (27 + n (4 + 24)). Flops: about 12 for each of
+// 130 boxes that a point is compared with, four at a time, and 60 (tetrahedra) or 800 (hexahedra) for each of two to
+// eight elements: arithmetic and waiting for caches set the time.
 #include "bench.hpp"
 #include "last_made.hpp"
 
@@ -71,8 +71,8 @@ inline Mesh const& lattice_of(Lattice const& lattice) {
   return last.get(lattice, [&] { return make_lattice(lattice); });
 }
 
-/// As many points as elements: inside, the places of an additive recurrence with three irrational steps (the second half of
-/// them in reverse order); outside, beside the face z = 0.
+/// As many points as elements: inside, the places of an additive recurrence with three irrational steps (the second
+/// half of them in reverse order); outside, beside the face z = 0.
 inline std::vector<Vec3> make_points(Index n, bool outside) {
   std::vector<Vec3> points(static_cast<std::size_t>(n));
   auto const part = [](double a) { return a - std::floor(a); };

@@ -5,8 +5,9 @@
 //   min_determinant   the smallest 3x3x3 determinant alone                   24 bytes per node
 //   certify           the sign of the Jacobian everywhere in each cell         24 bytes per node
 //
-// About 960, 530 and 260 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp, jacobian_bounds.hpp), 20 per byte: arithmetic sets the time, not
-// memory. "read share": bytes per second over those of reading three arrays of this size, measured in the same run.
+// About 960, 530 and 260 flops per cell (kernels/gridmorph/kernels/regular_cell.hpp, jacobian_bounds.hpp), 20 per byte:
+// arithmetic sets the time, not memory. "read share": bytes per second over those of reading three arrays of this size,
+// measured in the same run.
 #include "bench.hpp"
 #include "roof.hpp"
 
@@ -58,8 +59,8 @@ CoordinateViews<typename ExecutionSpace::memory_space> on_device(Coordinates con
           Kokkos::create_mirror_view_and_copy(space, c.z)};
 }
 
-/// Seconds to read three arrays of n nodes (24 bytes per node). Integers, because compilers may add them in any order and
-/// so with all lanes. Median of seven, once per size and execution space.
+/// Seconds to read three arrays of n nodes (24 bytes per node). Integers, because compilers may add them in any order
+/// and so with all lanes. Median of seven, once per size and execution space.
 template <class ExecutionSpace>
 double read_seconds(ExecutionSpace const& exec, std::int64_t n) {
   static std::map<std::int64_t, double> known;

@@ -3,8 +3,8 @@
 //   unstructured/rbf_apply   displacement of all nodes from the weights    1,000 centres per node; 48 bytes per node
 //   unstructured/rbf_solve   weights from the displacements of the centres  independent of the nodes
 //
-// "elements/s" compares with the unstructured morph, which has no centres. "error": largest difference from the given displacement
-// over all nodes of ball and rope, in radii of the ball: what 1,000 centres leave of the boundary's shape.
+// "elements/s" compares with the unstructured morph, which has no centres. "error": largest difference from the given
+// displacement over all nodes of ball and rope, in radii of the ball: what 1,000 centres leave of the boundary's shape.
 #include "bench.hpp"
 #include "last_made.hpp"
 #include "node_arrays.hpp"

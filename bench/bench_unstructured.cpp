@@ -1,5 +1,6 @@
-// Cost of the stages of an unstructured morph: the ball demo (bench_rbf has the same mesh), its nodes and elements numbered at
-// random, which is the worst order there is (names begin with unstructured/); "nodes" are about 0.24 times the elements.
+// Cost of the stages of an unstructured morph: the ball demo (bench_rbf has the same mesh), its nodes and elements
+// numbered at random, which is the worst order there is (names begin with unstructured/); "nodes" are about 0.24 times
+// the elements.
 //
 // Once per mesh, on the host:
 //   topology      neighbours, boundary faces, lists around nodes
@@ -17,10 +18,10 @@
 // topology, prepare and apply also on the mesh in order by position (..._in_order), and there alone:
 //   transpose     gradients of all nodes handed back to the boundary
 //
-// Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per node for
-// displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade and
-// lattice cells (24 + 4 + 8 * 24, of which neighbours share most). Sources of items lie anywhere: a cache line (64) each, so that
-// randomly numbered meshes take up to 64 / 24 times as long as the model says.
+// Model, bytes. Rows (layers, project): 12 per row, 8 and a source of 24 per item, 24 written. apply: those; 60 per
+// node for displacement and work array, 48 for coordinates in and out, and as much again for the residual's value, fade
+// and lattice cells (24 + 4 + 8 * 24, of which neighbours share most). Sources of items lie anywhere: a cache line (64)
+// each, so that randomly numbered meshes take up to 64 / 24 times as long as the model says.
 #include "bench.hpp"
 #include "last_made.hpp"
 #include "node_arrays.hpp"

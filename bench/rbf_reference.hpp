@@ -1,14 +1,15 @@
-// Morphing by radial basis functions, the usual way to move unstructured meshes, as a yardstick: dense, with centres picked from
-// the boundary. Not part of the library: it solves a system of equations.
+// Morphing by radial basis functions, the usual way to move unstructured meshes, as a yardstick: dense, with centres
+// picked from the boundary. Not part of the library: it solves a system of equations.
 //
 //   u(x) = sum_c w_c phi(|x - x_c| / R)      phi(r) = (1 - r)^4 (4 r + 1) for r < 1, else 0      u(x_c) = given
 //
-// H. Wendland, "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree", Adv.
-// Comput. Math. 4 (1995) 389: C2 and positive definite in 3-D, so that the matrix is regular for distinct centres. A. de Boer, M.S. van
-// der Schoot, H. Bijl, "Mesh deformation based on radial basis function interpolation", Comput. Struct. 85 (2007) 784.
+// H. Wendland, "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree",
+// Adv. Comput. Math. 4 (1995) 389: C2 and positive definite in 3-D, so that the matrix is regular for distinct centres.
+// A. de Boer, M.S. van der Schoot, H. Bijl, "Mesh deformation based on radial basis function interpolation", Comput.
+// Struct. 85 (2007) 784.
 //
-// Setting up: n^3 / 3 multiplications for n centres. Applying: about 16 flops and a square root per node and centre; bytes do
-// not matter.
+// Setting up: n^3 / 3 multiplications for n centres. Applying: about 16 flops and a square root per node and centre;
+// bytes do not matter.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -32,7 +33,8 @@ KOKKOS_INLINE_FUNCTION double wendland_c2(double squared) {
   return s2 * s2 * (4 * r + 1);
 }
 
-/// Solves the dense system a w = b in place for three right sides: Gaussian elimination with row exchange. a: row-major (n, n).
+/// Solves the dense system a w = b in place for three right sides: Gaussian elimination with row exchange. a: row-major
+/// (n, n).
 inline void solve_dense(std::vector<double>& a, std::vector<Vec3>& b) {
   std::size_t const n = b.size();
   auto const at = [&](std::size_t row, std::size_t column) -> double& { return a[row * n + column]; };

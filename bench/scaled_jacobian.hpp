@@ -9,7 +9,8 @@
 
 namespace gridmorph::bench {
 
-/// The corners at the other ends of the edges of a corner, right-handed; of tetrahedra, pyramids (base), prisms, hexahedra, and in 2-D.
+/// The corners at the other ends of the edges of a corner, right-handed; of tetrahedra, pyramids (base), prisms,
+/// hexahedra, and in 2-D.
 inline std::vector<std::array<int, 4>> corner_stars(ElementType type) {
   std::vector<std::array<int, 4>> out;
   auto const columns = [&](int n) {
@@ -31,14 +32,15 @@ inline std::vector<std::array<int, 4>> corner_stars(ElementType type) {
   return out;
 }
 
-/// Scaled Jacobian: the determinant of the edges at a corner over the product of their lengths; pyramids by the corners of their base,
-/// polyhedra not.
+/// Scaled Jacobian: the determinant of the edges at a corner over the product of their lengths; pyramids by the corners
+/// of their base, polyhedra not.
 struct Verdict {
   double smallest = 1;  ///< over all corners of all elements
   Index inverted = 0;   ///< elements with a corner that is not above zero
 };
 
-/// Elements that are numbered the other way round in the baseline are as good as others; collapsed corners are left out.
+/// Elements that are numbered the other way round in the baseline are as good as others; collapsed corners are left
+/// out.
 inline Verdict judge(Mesh const& mesh, Coordinates const& x) {
   std::array<std::vector<std::array<int, 4>>, n_element_types> stars;
   for (int t = 0; t < n_element_types; ++t) stars[std::size_t(t)] = corner_stars(ElementType(t));

@@ -1,13 +1,16 @@
-// Meshes of case files morphed by thin plate splines (thin_plate.hpp), to be put beside what this project makes of them: what
-// scripts/methods-study runs.
+// Meshes of case files morphed by thin plate splines (thin_plate.hpp), to be put beside what this project makes of
+// them: what scripts/methods-study runs.
 //
-//   bench_splines morph CASE.toml OUTPUT [CENTRES]   the mesh of the case file, its boundary nodes as centres; of more than CENTRES
-//                                                    (3000) as many of them, each farthest from those before it. Prints "centres,seconds"
+//   bench_splines morph CASE.toml OUTPUT [CENTRES]   the mesh of the case file, its boundary nodes as centres; of more
+//   than CENTRES
+//                                                    (3000) as many of them, each farthest from those before it. Prints
+//                                                    "centres,seconds"
 //   bench_splines judge BASELINE MESH ...            prints "smallest scaled Jacobian,inverted elements" of each
 //   bench_splines hexahedra BLOCKS OUTPUT            a structured mesh as elements
 //
-// Centres are the nodes whose displacement rules give; those that slide, are free or periodic follow the splines. Scaled Jacobian: the determinant of the edges at a corner over the
-// product of their lengths, the smallest over all corners of all elements (scaled_jacobian.hpp).
+// Centres are the nodes whose displacement rules give; those that slide, are free or periodic follow the splines.
+// Scaled Jacobian: the determinant of the edges at a corner over the product of their lengths, the smallest over all
+// corners of all elements (scaled_jacobian.hpp).
 #include "scaled_jacobian.hpp"
 #include "thin_plate.hpp"
 

@@ -1,7 +1,8 @@
-// How shapes of elements stand turns and shifts: this project, in one step and without its guard, beside thin plate splines with every
-// boundary node as a centre (thin_plate.hpp).
+// How shapes of elements stand turns and shifts: this project, in one step and without its guard, beside thin plate
+// splines with every boundary node as a centre (thin_plate.hpp).
 //
-//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift, wide, plunge; all of them where none is named
+//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift, wide, plunge; all of them where
+//   none is named
 //
 //   airfoil   a C mesh of 24,576 quadrilaterals, outer boundary 29 chords away, turned about the middle of its chord
 //   sphere    prisms and tetrahedra, outer sphere four diameters away, turned about an axis that no grid line follows
@@ -11,9 +12,10 @@
 //   wide      the same, outer sphere sixty diameters away
 //   plunge    the airfoil, moved across its chord by chords
 //
-// Writes lines of comma separated values: case, amount (degrees, diameters or chords), method, smallest scaled Jacobian, inverted elements.
-// Scaled Jacobian: determinant of the edges at a corner over the product of their lengths, the smallest over all corners of all elements.
-// scripts/plot-turns draws them. --small: meshes of a few thousand elements and two amounts each, which the tests run.
+// Writes lines of comma separated values: case, amount (degrees, diameters or chords), method, smallest scaled
+// Jacobian, inverted elements. Scaled Jacobian: determinant of the edges at a corner over the product of their lengths,
+// the smallest over all corners of all elements. scripts/plot-turns draws them. --small: meshes of a few thousand
+// elements and two amounts each, which the tests run.
 #include "scaled_jacobian.hpp"
 #include "thin_plate.hpp"
 

@@ -1,13 +1,14 @@
 // The shape of a channel's floor by gradients: sections of given areas.
 //
-// The floor of a channel, a box of cells, is the sum of waves whose heights p are sought, so that each section across the channel has a
-// wanted area, a tenth less half way than at the ends. The sum of squares J of what is missing is a function of the nodes of the mesh, as a drag or
-// a loss that a flow solver finds. Its gradient dJ/dx goes through the mesh to the floor by one transpose and from there to the heights,
-// however many these are:
+// The floor of a channel, a box of cells, is the sum of waves whose heights p are sought, so that each section across
+// the channel has a wanted area, a tenth less half way than at the ends. The sum of squares J of what is missing is a
+// function of the nodes of the mesh, as a drag or a loss that a flow solver finds. Its gradient dJ/dx goes through the
+// mesh to the floor by one transpose and from there to the heights, however many these are:
 //
 //   dJ/dp = (db/dp)^T (dx/db)^T dJ/dx      b: displacement of the boundary, x: positions of all nodes
 //
-// Prints this gradient beside centred differences, then the steps of a descent. Needs the core library (and so Kokkos) alone.
+// Prints this gradient beside centred differences, then the steps of a descent. Needs the core library (and so Kokkos)
+// alone.
 #include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>

@@ -1,9 +1,9 @@
 // A solver that owns its coordinates lets its mesh follow a moving wall, time step by time step.
 //
 // Two zones, one above the other, share an interface; the floor of the lower one is a panel that bends, the other faces
-// stay. The solver keeps each zone in an array of its own, (i, j, k, 3) with a ghost layer around it. The plan is made once. Every
-// step enqueues kernels on the solver's own execution space, which read and write these arrays: no allocation, no fence, no host
-// decision. Needs the core library (and so Kokkos) alone.
+// stay. The solver keeps each zone in an array of its own, (i, j, k, 3) with a ghost layer around it. The plan is made
+// once. Every step enqueues kernels on the solver's own execution space, which read and write these arrays: no
+// allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
 #include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>

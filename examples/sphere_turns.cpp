@@ -2,8 +2,8 @@
 //
 //   example_sphere_turns [ELEMENTS] [ANGLE_DEG ...]
 //
-// Prints how many elements are inverted that were not before, and the smallest determinant in parentheses. Made the table of
-// docs/unstructured.md, "Large turns".
+// Prints how many elements are inverted that were not before, and the smallest determinant in parentheses. Made the
+// table of docs/unstructured.md, "Large turns".
 #include <generators/sphere.hpp>
 #include <gridmorph/gridmorph.hpp>
 

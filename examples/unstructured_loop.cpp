@@ -1,7 +1,8 @@
 // A solver with an unstructured mesh: a body heaves in a box, the mesh follows time step by time step.
 //
-// Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues kernels on the
-// solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
+// Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues
+// kernels on the solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and
+// so Kokkos) alone.
 #include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>

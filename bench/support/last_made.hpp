@@ -8,8 +8,8 @@
 
 namespace gridmorph::bench {
 
-/// The last value that was made, until another key is asked for or Kokkos ends: large meshes take gigabytes, and Views may
-/// not outlive Kokkos. For function-local statics, made while Kokkos is up.
+/// The last value that was made, until another key is asked for or Kokkos ends: large meshes take gigabytes, and Views
+/// may not outlive Kokkos. For function-local statics, made while Kokkos is up.
 template <class Key, class Value>
 class LastMade {
  public:

@@ -1,4 +1,5 @@
-// The kernels that run under a plan, each by itself: what to launch for a plan, on how many nodes, moving how many bytes.
+// The kernels that run under a plan, each by itself: what to launch for a plan, on how many nodes, moving how many
+// bytes.
 #pragma once
 
 #include "node_arrays.hpp"

@@ -67,8 +67,8 @@ Roof roof(ExecutionSpace const& exec, std::int64_t n) {
   return known[n] = measured;
 }
 
-/// Calls work() once per iteration, timed from idle to idle; returns the mean in seconds. Once before that: the first use of
-/// memory costs what the system takes to hand it out, on a virtual machine a second per gigabyte.
+/// Calls work() once per iteration, timed from idle to idle; returns the mean in seconds. Once before that: the first
+/// use of memory costs what the system takes to hand it out, on a virtual machine a second per gigabyte.
 template <class ExecutionSpace, class Work>
 double time_iterations(benchmark::State& state, ExecutionSpace const& exec, Work const& work) {
   seconds(exec, work);

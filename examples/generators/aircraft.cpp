@@ -17,8 +17,8 @@ namespace aircraft_blocks {
 
 using namespace aircraft;
 
-/// A block of the mesh before its directions are changed: nodes of the lattice, or of the layer on a wall face, (two ways along the wall, away
-/// from it).
+/// A block of the mesh before its directions are changed: nodes of the lattice, or of the layer on a wall face, (two
+/// ways along the wall, away from it).
 struct Block {
   std::string name;
   WallFace const* wall = nullptr;
@@ -37,7 +37,8 @@ Orientation some_orientation(int zone) {
   return o;
 }
 
-/// Zones of the lattice lie between all its planes but that of the hinge and the one inboard of the aileron, which only walls need.
+/// Zones of the lattice lie between all its planes but that of the hinge and the one inboard of the aileron, which only
+/// walls need.
 std::vector<Block> lattice_blocks(Lattice const& lattice) {
   std::vector<Block> blocks;
   auto const next = [](int axis, int plane) {

@@ -12,7 +12,8 @@ namespace {
 
 double between(double a, double b, double t) { return a + (b - a) * std::clamp(t, 0.0, 1.0); }
 
-// Corners of cells. Planes pass the bodies at some distance; where a plane passes no body it goes on from those beside it.
+// Corners of cells. Planes pass the bodies at some distance; where a plane passes no body it goes on from those beside
+// it.
 
 double corner_y(int i, int j) {
   constexpr double side[] = {2, 2, 2.8, 2.8, 2.8, 2.8, 2.8, 2.05, 1.25, 1.1, 1.1};

@@ -39,7 +39,8 @@ enum PlaneK {
   k_high
 };
 
-/// Planes by their numbers above, nodes by (i, j, k) through the whole lattice. Cells of the lattice are slabs of planes.
+/// Planes by their numbers above, nodes by (i, j, k) through the whole lattice. Cells of the lattice are slabs of
+/// planes.
 struct Lattice {
   std::array<std::vector<int>, 3> plane;  ///< node at each plane
   std::array<std::vector<int>, 3>
@@ -60,7 +61,8 @@ struct Lattice {
   [[nodiscard]] IndexRange nodes(Index3 const& from, Index3 const& to) const;
 };
 
-/// In slabs where a lifting surface ends: how many of n cells, the last ones, are beside the rounding of its tip, and where they begin.
+/// In slabs where a lifting surface ends: how many of n cells, the last ones, are beside the rounding of its tip, and
+/// where they begin.
 [[nodiscard]] constexpr int tip_cells(int n) { return n < 3 ? 1 : n / 3; }
 constexpr double wing_tip_begin = 0.65, htail_tip_begin = 0.845, vtail_tip_begin = 0.9;
 

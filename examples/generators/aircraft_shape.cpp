@@ -15,7 +15,8 @@ double smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
-/// Half the thickness of the symmetric NACA section of four digits over its chord; what makes the trailing edge blunt added.
+/// Half the thickness of the symmetric NACA section of four digits over its chord; what makes the trailing edge blunt
+/// added.
 double half_thickness(double thickness, double x) {
   return 5 * thickness * (0.2969 * std::sqrt(x) + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1015 * x)))) + 0.003 * x;
 }

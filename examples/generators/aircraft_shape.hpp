@@ -5,8 +5,9 @@
 
 namespace gridmorph::aircraft {
 
-/// A body along x whose sections are circles: an ellipsoid's half as nose, a cylinder, a taper that rises, a small rounding. A point is given by
-/// the station q, which is x between nose and rounding and the angle about their centres in them, and by the angle from y towards z.
+/// A body along x whose sections are circles: an ellipsoid's half as nose, a cylinder, a taper that rises, a small
+/// rounding. A point is given by the station q, which is x between nose and rounding and the angle about their centres
+/// in them, and by the angle from y towards z.
 struct Fuselage {
   double nose = 5, taper = 24, end = 35.5, rounding = 0.8, radius = 2, end_radius = 0.5, rise = 0.9;
 
@@ -29,9 +30,10 @@ struct Nacelle {
   [[nodiscard]] Vec3 at(Vec3 const& direction) const;
 };
 
-/// Wing or tail surface: straight between two sections, with a round nose, a thin blunt trailing edge and, beyond the tip section, a rounding
-/// of half circles. The face of the box that surrounds it is the front (nose), the back (base) or one of the sides; u and v are places on the
-/// faces of a cube, u along the span (0 up to the tip section, up to 1 in the rounding), v across (-1 to 1).
+/// Wing or tail surface: straight between two sections, with a round nose, a thin blunt trailing edge and, beyond the
+/// tip section, a rounding of half circles. The face of the box that surrounds it is the front (nose), the back (base)
+/// or one of the sides; u and v are places on the faces of a cube, u along the span (0 up to the tip section, up to 1
+/// in the rounding), v across (-1 to 1).
 struct LiftingSurface {
   Vec3 root, tip;  ///< leading edges
   double root_chord, tip_chord, root_thickness, tip_thickness;

@@ -173,7 +173,8 @@ class Placer {
         on_fuselage_.emplace(lattice_.number(p), f);
         put_at(p, f);
       });
-    // Between the four edges (Gordon and Hall); an edge is given where a cap or another body has placed it, and straight elsewhere.
+    // Between the four edges (Gordon and Hall); an edge is given where a cap or another body has placed it, and
+    // straight elsewhere.
     int const around = face.axis == 1 ? 2 : 1;
     IndexRange const& r = face.nodes;
     auto const corner_of = [&](int a, int b) {

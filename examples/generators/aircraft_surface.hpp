@@ -1,4 +1,5 @@
-// Where the nodes of the generated aircraft's surface are, one for each node of the lattice on what is left out of it. Internal to it.
+// Where the nodes of the generated aircraft's surface are, one for each node of the lattice on what is left out of it.
+// Internal to it.
 #pragma once
 
 #include <generators/aircraft_lattice.hpp>

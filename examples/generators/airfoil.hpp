@@ -15,10 +15,11 @@ struct AirfoilOptions {
   double distance = 29;      ///< of the outer boundary from the leading edge, in chords (2 to 1000)
 };
 
-/// The mesh: one zone of (around + 2 wake) x across quadrilaterals, patches "airfoil" (BCWallViscous) and "farfield" (BCFarfield), numbered row
-/// by row. Sheared parabolic coordinates (A. Jameson, Comm. Pure Appl. Math. 27 (1974) 283): with z = z0 + w^2, z0 just behind
-/// the leading edge, the section is a low bump over the real axis of w, and lines are straight from it to a line of constant height; the
-/// wake is a line of nodes that both sides share. Throws ConfigError when the options make no such mesh. Linear in the cells.
+/// The mesh: one zone of (around + 2 wake) x across quadrilaterals, patches "airfoil" (BCWallViscous) and "farfield"
+/// (BCFarfield), numbered row by row. Sheared parabolic coordinates (A. Jameson, Comm. Pure Appl. Math. 27 (1974) 283):
+/// with z = z0 + w^2, z0 just behind the leading edge, the section is a low bump over the real axis of w, and lines are
+/// straight from it to a line of constant height; the wake is a line of nodes that both sides share. Throws ConfigError
+/// when the options make no such mesh. Linear in the cells.
 Mesh make_airfoil(AirfoilOptions const& options);
 
 }  // namespace gridmorph

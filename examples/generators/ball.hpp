@@ -1,5 +1,5 @@
-// The wrecking ball: a ball on a rope that hangs from the jib of a crane, in a box. A hybrid mesh of our own: layers of prisms
-// or hexahedra on ball and rope, tetrahedra elsewhere.
+// The wrecking ball: a ball on a rope that hangs from the jib of a crane, in a box. A hybrid mesh of our own: layers of
+// prisms or hexahedra on ball and rope, tetrahedra elsewhere.
 //
 //        +-----------------------------------------+
 //        |                                         |      z up; the end of the rope is at z = rope end, ball centre
@@ -12,11 +12,11 @@
 //        |                            |    |       |      x to the mast of the crane
 //        +----------------------------+----+-------+
 //
-// Around ball and rope lies a tube of square section, wide as 1.8 radii to each side, from 1.8 radii below the ball's centre to
-// the jib. Its cells stand on the wall: on lines off the wall through the layers, on curves from there to the tube's sides.
-// Lower half of the ball: a cubed sphere; above: rings. The rest of the box is a graded lattice. All cells beyond the layers
-// are then cut into tetrahedra, and their nodes shifted. Ball nodes lie on the sphere and rope nodes on the cylinder to
-// round-off. Memory and time are linear in the elements.
+// Around ball and rope lies a tube of square section, wide as 1.8 radii to each side, from 1.8 radii below the ball's
+// centre to the jib. Its cells stand on the wall: on lines off the wall through the layers, on curves from there to the
+// tube's sides. Lower half of the ball: a cubed sphere; above: rings. The rest of the box is a graded lattice. All
+// cells beyond the layers are then cut into tetrahedra, and their nodes shifted. Ball nodes lie on the sphere and rope
+// nodes on the cylinder to round-off. Memory and time are linear in the elements.
 #pragma once
 
 #include <generators/hybrid_mesh.hpp>
@@ -47,8 +47,8 @@ struct BallOptions {
 /// Where the rope hangs from the jib: [0, 0, z]. Lengths times the radius.
 double rope_end(BallOptions const& options);
 
-/// The mesh: one zone, patches as above with families of the same names. Throws ConfigError when the options make no such
-/// mesh, naming every option that is wrong.
+/// The mesh: one zone, patches as above with families of the same names. Throws ConfigError when the options make no
+/// such mesh, naming every option that is wrong.
 Mesh make_ball(BallOptions const& options);
 
 }  // namespace gridmorph

@@ -1,5 +1,5 @@
-// How many cells the ball mesh has in each direction. Internal to the ball demo. All lengths in radii of the ball, whose centre
-// is the origin.
+// How many cells the ball mesh has in each direction. Internal to the ball demo. All lengths in radii of the ball,
+// whose centre is the origin.
 #pragma once
 
 #include <generators/ball.hpp>

@@ -33,9 +33,9 @@ BallTube::BallTube(BallOptions const& options, BallCounts const& counts) : count
   make_rings(options);
 }
 
-// Above the equator the columns begin upright to the ball, turn over where it meets the rope, and are level along the rope. On
-// the tube's side the lines run ahead of the wall along the ball, and the wall catches up along the rope. The constants are those
-// that keep the angles of the tube's cells largest, from short thick ropes to long thin ones.
+// Above the equator the columns begin upright to the ball, turn over where it meets the rope, and are level along the
+// rope. On the tube's side the lines run ahead of the wall along the ball, and the wall catches up along the rope. The
+// constants are those that keep the angles of the tube's cells largest, from short thick ropes to long thin ones.
 void BallTube::make_rings(BallOptions const& options) {
   constexpr double a = tube_half_width, lift = 0.57, neck_slope = 1.1, end_slope = 0.78;
   double const r = options.rope_radius, arc = upper_arc(options), neck = std::sqrt(1 - r * r);

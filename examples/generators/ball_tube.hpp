@@ -1,5 +1,5 @@
-// The tube of cells around ball and rope: columns off the wall, straight below the ball's equator, curved above it. Internal to
-// the ball demo; lengths as in ball_counts.hpp.
+// The tube of cells around ball and rope: columns off the wall, straight below the ball's equator, curved above it.
+// Internal to the ball demo; lengths as in ball_counts.hpp.
 #pragma once
 
 #include <generators/ball_counts.hpp>

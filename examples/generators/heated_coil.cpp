@@ -83,7 +83,8 @@ struct Swept {
       }
     return {std::move(nodes), std::move(ranks)};
   }
-  /// A cell over a quadrilateral a b c d of the section, which runs from z to r: face a b c d looks back along the sweep.
+  /// A cell over a quadrilateral a b c d of the section, which runs from z to r: face a b c d looks back along the
+  /// sweep.
   [[nodiscard]] Hex cell(std::array<int, 4> const& q, int step) const {
     return {node(q[0], step),     node(q[3], step),     node(q[2], step),     node(q[1], step),
             node(q[0], step + 1), node(q[3], step + 1), node(q[2], step + 1), node(q[1], step + 1)};

@@ -1,10 +1,10 @@
-// Hybrid unstructured meshes from hexahedral cells: layers stay hexahedra or become prisms, the rest becomes tetrahedra, with
-// pyramids where a hexahedron meets them. Internal to the demo meshes.
+// Hybrid unstructured meshes from hexahedral cells: layers stay hexahedra or become prisms, the rest becomes
+// tetrahedra, with pyramids where a hexahedron meets them. Internal to the demo meshes.
 //
-// Every node has a rank, and a quadrilateral that must be split is split from its node of smallest rank, so that two cells
-// cut their common face alike whatever else they are (J. Dompierre et al., "How to subdivide pyramids, prisms, and
-// hexahedra into tetrahedra", 8th International Meshing Roundtable, 1999). Ranks are scattered over the nodes, so that diagonals
-// have no preferred direction.
+// Every node has a rank, and a quadrilateral that must be split is split from its node of smallest rank, so that two
+// cells cut their common face alike whatever else they are (J. Dompierre et al., "How to subdivide pyramids, prisms,
+// and hexahedra into tetrahedra", 8th International Meshing Roundtable, 1999). Ranks are scattered over the nodes, so
+// that diagonals have no preferred direction.
 #pragma once
 
 #include <gridmorph/mesh/unstructured_mesh.hpp>
@@ -52,7 +52,8 @@ class HybridMesh {
   void add_prisms(Hex const& hex);
   /// Six tetrahedra that share the corner of smallest rank.
   void add_tetrahedra(Hex const& hex);
-  /// Bottom left whole: a pyramid on it, and ten tetrahedra over the other faces, all around a node added in the middle.
+  /// Bottom left whole: a pyramid on it, and ten tetrahedra over the other faces, all around a node added in the
+  /// middle.
   void add_pyramid(Hex const& hex);
 
   /// Names, families and kind of a patch; returns its number.
@@ -60,8 +61,9 @@ class HybridMesh {
   void add_quadrilateral(int patch, Quad const& quad) { faces_[std::size_t(patch)].push_back(quad); }
   void add_triangles(int patch, Quad const& quad);
 
-  /// Moves each node that only tetrahedra and pyramids' apexes have, off the boundary, by up to `amount` of its shortest edge
-  /// in each direction; less where an element would lose more than 40 % of its volume. Depends on node numbers alone.
+  /// Moves each node that only tetrahedra and pyramids' apexes have, off the boundary, by up to `amount` of its
+  /// shortest edge in each direction; less where an element would lose more than 40 % of its volume. Depends on node
+  /// numbers alone.
   void jitter(double amount);
   /// Numbers nodes, and elements of each type, at random; the same for the same mesh.
   void shuffle();

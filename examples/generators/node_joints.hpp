@@ -14,9 +14,9 @@ struct OpenFace {
   IndexRange range;  ///< of nodes
 };
 
-/// Finds the cells of zone faces whose four nodes are those of another one, adds interfaces from both sides for rectangles of them, and returns
-/// rectangles of the others. identity: the same number for all nodes at one place that are one, and for no others; no face may have an edge
-/// or a diagonal of one node twice. n log n in the cells on faces.
+/// Finds the cells of zone faces whose four nodes are those of another one, adds interfaces from both sides for
+/// rectangles of them, and returns rectangles of the others. identity: the same number for all nodes at one place that
+/// are one, and for no others; no face may have an edge or a diagonal of one node twice. n log n in the cells on faces.
 std::vector<OpenFace> join_by_nodes(Mesh& mesh, std::function<Index(int zone, Index3 const&)> const& identity);
 
 }  // namespace gridmorph::demo

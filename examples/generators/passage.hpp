@@ -2,8 +2,8 @@
 //
 //        periodic (upper)
 //   +----------+----------------+----------+      12 pieces in every blade-to-blade section: a ring of four around the
-//   |  inlet   |     upper      |  outlet  |      blade, one H piece on each of its sides, four H pieces in the corners.
-//   |  upper   |                |  upper   |
+//   |  inlet   |     upper      |  outlet  |      blade, one H piece on each of its sides, four H pieces in the
+//   corners. |  upper   |                |  upper   |
 //   +---------- \  ring_upper  / ----------+      axial ->  i      (ring: i runs round the blade, clockwise,
 //   |  inlet    ring_le    ring_te outlet  |      span     j              k from the wall outwards)
 //   |  middle   /  ring_lower  \   middle  |      pitch up k
@@ -13,13 +13,17 @@
 //   +----------+----------------+----------+
 //        periodic (lower)
 //
-// With a tip gap (BladeTip) the ring goes on over the tip, and an O of four pieces round a core fills the section of the blade:
+// With a tip gap (BladeTip) the ring goes on over the tip, and an O of four pieces round a core fills the section of
+// the blade:
 //
-//   ring_upper       +-----------------------+       tip_upper      i: round the blade, as in the ring, or axial in the core
-//                   /  \      tip_upper    /  \                    k: from the core outwards, or along the pitch in the core
+//   ring_upper       +-----------------------+       tip_upper      i: round the blade, as in the ring, or axial in the
+//   core
+//                   /  \      tip_upper    /  \                    k: from the core outwards, or along the pitch in the
+//                   core
 //   ring_le        | tip_le+------------+tip_te |
 //                  |       |  tip_core  |       |     squealer: the core is a pocket; the O is its rim
-//                   \      +------------+      /      groove: tip_le, core and tip_te are one, open to the ring at both ends
+//                   \      +------------+      /      groove: tip_le, core and tip_te are one, open to the ring at both
+//                   ends
 //   ring_lower       +-----------------------+
 //
 // Families: blade, hub, case (BCWallViscous), inlet (BCInflow), outlet (BCOutflow); tip, and squealer
@@ -46,9 +50,9 @@ struct EndWall {
   double bulge = 0;
 };
 
-/// One airfoil section in the developed surface (axial, R theta), R(h) the radius of the stacking axis at span fraction h.
-/// Circular-arc camber; half thickness sin(phi)/2 (a + b u + c u (1 - u)) with u = (1 - cos phi) / 2 along the camber
-/// line: one analytic closed curve with round leading and trailing edge.
+/// One airfoil section in the developed surface (axial, R theta), R(h) the radius of the stacking axis at span fraction
+/// h. Circular-arc camber; half thickness sin(phi)/2 (a + b u + c u (1 - u)) with u = (1 - cos phi) / 2 along the
+/// camber line: one analytic closed curve with round leading and trailing edge.
 struct BladeSection {
   double chord = 0.12;
   double inlet_angle_deg = 40;     ///< camber at the leading edge, from axial
@@ -72,8 +76,8 @@ struct PassageCounts {
   int rim = 0;                                 ///< over the tip, from the core to the contour
 };
 
-/// The end of the blade at the case: it reaches it, or there is a gap over a tip that is flat, has a pocket with a rim all round, or a
-/// groove between two rails, open at the leading and the trailing edge.
+/// The end of the blade at the case: it reaches it, or there is a gap over a tip that is flat, has a pocket with a rim
+/// all round, or a groove between two rails, open at the leading and the trailing edge.
 enum class BladeTip { none, flat, squealer, groove };
 /// By name. Throws ConfigError that lists them.
 BladeTip blade_tip(std::string const& name);
@@ -83,8 +87,10 @@ std::vector<std::string> blade_families(BladeTip tip);
 
 struct PassageOptions {
   enum class Layout {
-    whole_faces,  ///< 12 zones, with a tip gap 12 per layer and those over the tip: every zone face is one boundary or one interface
-    five_zones  ///< ring (closing on itself), inlet, outlet, upper, lower, and five over the tip: interfaces on parts of faces
+    whole_faces,  ///< 12 zones, with a tip gap 12 per layer and those over the tip: every zone face is one boundary or
+                  ///< one interface
+    five_zones    ///< ring (closing on itself), inlet, outlet, upper, lower, and five over the tip: interfaces on parts
+                  ///< of faces
   };
 
   Index nodes = 200'000;  ///< wanted, all zones together; met within a few percent (at least 10,000)
@@ -121,8 +127,9 @@ void set_first_cells(PassageOptions& options, double share_of_span);
 PassageCounts passage_counts(PassageOptions const& options);
 
 /// The mesh. Coincident nodes of different zones are bit-identical; the upper periodic nodes are the lower ones,
-/// rotated; hub and case nodes lie on their surface to round-off. With a gap, tip and floor lie at constant span fraction. Right-handed unless asked otherwise.
-/// Throws ConfigError when the options make no passage, naming every option that is wrong.
+/// rotated; hub and case nodes lie on their surface to round-off. With a gap, tip and floor lie at constant span
+/// fraction. Right-handed unless asked otherwise. Throws ConfigError when the options make no passage, naming every
+/// option that is wrong.
 Mesh make_passage(PassageOptions const& options);
 
 }  // namespace gridmorph

@@ -42,8 +42,8 @@ class Annulus {
   double inlet_, length_;
 };
 
-/// The airfoil at one span fraction. phi = 0 is the leading edge, pi the trailing edge, (0, pi) the upper side; phi runs
-/// clockwise. Mid chord is the origin.
+/// The airfoil at one span fraction. phi = 0 is the leading edge, pi the trailing edge, (0, pi) the upper side; phi
+/// runs clockwise. Mid chord is the origin.
 class Airfoil {
  public:
   Airfoil(PassageOptions const& options, double span);

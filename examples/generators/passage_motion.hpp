@@ -39,8 +39,9 @@ double chord_factor(PassageMotion const& motion, double span);
 /// Displacement of a point of the blade, its tip and what is cut into it made with these options. Cost: O(1).
 Vec3 passage_displacement(PassageOptions const& options, PassageMotion const& motion, Vec3 const& point);
 
-/// Writes "x,y,z,dx,dy,dz" of the nodes of these families' patches, each point once, with 17 digits, so that reading gives
-/// back the same numbers. Throws MeshError when no patch has one of the families, MachineError when writing fails.
+/// Writes "x,y,z,dx,dy,dz" of the nodes of these families' patches, each point once, with 17 digits, so that reading
+/// gives back the same numbers. Throws MeshError when no patch has one of the families, MachineError when writing
+/// fails.
 void write_displacement_csv(std::string const& path, Mesh const& mesh, std::vector<std::string> const& families,
                             std::function<Vec3(Vec3 const&)> const& displacement);
 

@@ -106,7 +106,8 @@ IndexRange edge_range(PassageLayout const& layout, Found const& found, Edge cons
   return r;
 }
 
-/// Calls visit(a, b) for what lies on the two sides of a joint, over as many stations as zones are the same; one of them may be nothing.
+/// Calls visit(a, b) for what lies on the two sides of a joint, over as many stations as zones are the same; one of
+/// them may be nothing.
 template <class Visit>
 void for_each_stretch(PassageLayout const& layout, Joint const& joint, Visit const& visit) {
   Found a, b;

@@ -51,7 +51,8 @@ struct PassageLayout {
 void add_zones(Mesh& mesh, PassageLayout const& layout);
 /// One patch per family and zone face, or rectangle of one.
 void add_patches(Mesh& mesh, PassageLayout const& layout);
-/// Every interface from both sides. `turn` takes the lower periodic onto the upper one; `center` is a point on its axis.
+/// Every interface from both sides. `turn` takes the lower periodic onto the upper one; `center` is a point on its
+/// axis.
 void add_interfaces(Mesh& mesh, PassageLayout const& layout, RigidTransform const& turn, Vec3 const& center);
 
 }  // namespace gridmorph::passage

@@ -22,8 +22,8 @@ struct Point {
 };
 using Line = std::vector<Point>;
 
-/// n cells on [0, 1], the first and the last one about as long as asked: M. Vinokur's two-sided stretching; uniform where that would have to
-/// gather nodes in the middle. Nodes 0 ... n.
+/// n cells on [0, 1], the first and the last one about as long as asked: M. Vinokur's two-sided stretching; uniform
+/// where that would have to gather nodes in the middle. Nodes 0 ... n.
 std::vector<double> two_sided(int n, double first, double last) {
   double const ratio = std::sqrt(last / first), crowd = 1 / (n * std::sqrt(first * last));
   std::vector<double> out;
@@ -82,7 +82,8 @@ Line chain(std::vector<Line> const& lines) {
   return out;
 }
 
-/// An airfoil: chord from nose to tail, largest thickness about `thickness` and camber of a parabola, in chords; round nose, sharp tail.
+/// An airfoil: chord from nose to tail, largest thickness about `thickness` and camber of a parabola, in chords; round
+/// nose, sharp tail.
 struct Element {
   Point nose, tail;
   double thickness, camber;
@@ -104,9 +105,9 @@ struct Element {
   }
 };
 
-/// The lines that bound the four zones. Wakes reach from each tail to x = 10: part A beyond the flap, B above the flap, C above the main
-/// element. Zones meet on three lines: `flap`, around the flap's C grid above and before it; `slat`, below and behind the slat's; and
-/// the inner side of the outermost zone, in pieces.
+/// The lines that bound the four zones. Wakes reach from each tail to x = 10: part A beyond the flap, B above the flap,
+/// C above the main element. Zones meet on three lines: `flap`, around the flap's C grid above and before it; `slat`,
+/// below and behind the slat's; and the inner side of the outermost zone, in pieces.
 struct Outlines {
   Element slat{{-0.070, -0.045}, {0.030, 0.045}, 0.10, 0.10};
   Element main{{0, -0.02}, {0.88, 0.02}, 0.075, 0.01};

@@ -108,7 +108,8 @@ class CubeSurface {
         }
   }
 
-  /// Of each column: a point of the surface of the cube [-1, 1]^3, from where the faces look equally large to the centre.
+  /// Of each column: a point of the surface of the cube [-1, 1]^3, from where the faces look equally large to the
+  /// centre.
   [[nodiscard]] std::vector<Vec3> const& points() const { return directions_; }
 
   /// Columns of face (a, b) of one of the sides, counter-clockwise seen from outside.

@@ -1,5 +1,5 @@
-// A viscous sphere in a large sphere or cube: layers of prisms (or hexahedra) off a cubed sphere, tetrahedra outside. A small
-// mesh of the kind that external flows are computed on; for tests, benchmarks and first steps.
+// A viscous sphere in a large sphere or cube: layers of prisms (or hexahedra) off a cubed sphere, tetrahedra outside. A
+// small mesh of the kind that external flows are computed on; for tests, benchmarks and first steps.
 #pragma once
 
 #include <generators/hybrid_mesh.hpp>
@@ -21,8 +21,8 @@ struct SphereOptions {
   bool shuffle = true;   ///< numbers nodes and elements at random
 };
 
-/// The mesh: one zone, patches "sphere" (BCWallViscous) and "outer" (BCFarfield). Sphere nodes lie on it to round-off. Throws
-/// ConfigError when the options make no such mesh, naming every option that is wrong. Linear in the elements.
+/// The mesh: one zone, patches "sphere" (BCWallViscous) and "outer" (BCFarfield). Sphere nodes lie on it to round-off.
+/// Throws ConfigError when the options make no such mesh, naming every option that is wrong. Linear in the elements.
 Mesh make_sphere(SphereOptions const& options);
 
 }  // namespace gridmorph

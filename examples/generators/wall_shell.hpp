@@ -1,5 +1,5 @@
-// A shell of cells around a wall: quadrilaterals on the wall, and a column of nodes off each of their corners. Its first
-// cells are layers, the others are split into tetrahedra. Internal to the demo meshes.
+// A shell of cells around a wall: quadrilaterals on the wall, and a column of nodes off each of their corners. Its
+// first cells are layers, the others are split into tetrahedra. Internal to the demo meshes.
 #pragma once
 
 #include <generators/hybrid_mesh.hpp>
@@ -24,8 +24,8 @@ struct LayerHeights {
 /// Points of a column at fractions of its way: layers first, then `n` cells that continue their growth up to the end.
 std::vector<double> column_heights(LayerHeights const& layers, int n, double length);
 
-/// First level, not below the layers, over which a cell is at least 0.3 times as high as it is wide. Cells flatter than that
-/// must be split alike at the bottom and at the top, or tetrahedra on a curved wall are inverted.
+/// First level, not below the layers, over which a cell is at least 0.3 times as high as it is wide. Cells flatter than
+/// that must be split alike at the bottom and at the top, or tetrahedra on a curved wall are inverted.
 int first_tall_cell(LayerHeights const& layers, std::vector<double> const& heights, double length, double width);
 
 struct WallQuad {

@@ -18,8 +18,9 @@ constexpr double pitch_deg = 360.0 / sectors;
 
 enum class Row { vanes, runner, draft_tube };
 
-/// Lower side of a passage in degrees, without the thickness of blades. s: 0 at the lower edge of the blades, 1 at the upper one; beyond
-/// them the camber line goes on straight. Vanes turn the flow from axial at the inlet; the runner's blades are twisted along the span.
+/// Lower side of a passage in degrees, without the thickness of blades. s: 0 at the lower edge of the blades, 1 at the
+/// upper one; beyond them the camber line goes on straight. Vanes turn the flow from axial at the inlet; the runner's
+/// blades are twisted along the span.
 double camber_deg(Row row, double z, double r) {
   if (row == Row::draft_tube) return -8;
   double const s = row == Row::vanes ? (z - 0.09) / 0.1 : (z + 0.05) / 0.1;

@@ -7,8 +7,8 @@
 
 namespace gridmorph::demo {
 
-/// Joins a face range of a zone to that of a donor and stores both sides, as most files do. The inverse of a rotation is the one about the
-/// same line by the opposite angle.
+/// Joins a face range of a zone to that of a donor and stores both sides, as most files do. The inverse of a rotation
+/// is the one about the same line by the opposite angle.
 inline void join(Mesh& mesh, Interface1to1 const& face, std::string const& name_back,
                  std::optional<Periodic> const& periodic_back = std::nullopt) {
   mesh.interfaces.push_back(face);

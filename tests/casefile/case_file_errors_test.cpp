@@ -68,7 +68,8 @@ TEST(CaseFileErrors, KeysOfPartsWithoutEndAreRefused) {
   EXPECT_TRUE(reported(problems_of("[" + key + "]"), "case.toml:1: not valid TOML", {"parts"}));
 }
 
-// Each of these took minutes where a line was looked for from the beginning of the text, or read anew for each value in it.
+// Each of these took minutes where a line was looked for from the beginning of the text, or read anew for each value in
+// it.
 TEST(CaseFileErrors, LongTablesAndListsAreReadAtOnceAndKeepTheirLines) {
   std::string constants = "[constants]\n", list = "[[motion]]\nrule = \"fixed\"\npatches = [",
               inline_table = "[constants]\n[x]\ny = {";

@@ -16,8 +16,8 @@ namespace {
 
 /// One row of a table of the docs.
 struct CaseKey {
-  /// As "mesh", "mesh axis" (a table in a table), "motion" (keys of every rule), "motion rigid" and "motion rigid rotation" (keys of
-  /// one rule); "" for the top level.
+  /// As "mesh", "mesh axis" (a table in a table), "motion" (keys of every rule), "motion rigid" and "motion rigid
+  /// rotation" (keys of one rule); "" for the top level.
   std::string table;
   std::string key;      ///< "<name>": any name
   std::string type;     ///< "string", "number", "[x, y, z]", ...
@@ -90,7 +90,8 @@ std::string rule_of_table(std::string_view table) {
   return std::string(table.substr(0, table.find(' ')));
 }
 
-/// The rule of the case file that shows a key; a sequence needs one that changes with time, an amplitude one that moves.
+/// The rule of the case file that shows a key; a sequence needs one that changes with time, an amplitude one that
+/// moves.
 std::string rule_beside(CaseKey const& key) {
   bool const amplitude = key.table == "motion" && key.key.starts_with("amplitude");
   return amplitude ? "rigid" : key.table == "sequence" ? "field" : rule_of_table(key.table);

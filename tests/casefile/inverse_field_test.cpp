@@ -105,7 +105,8 @@ TEST(InverseField, IsRefusedWhereItDoesNotContractWithTheResidual) {
                       {"after 3 iterations", "tolerance 1e-12", "raise inverse_iterations"});
 }
 
-/// A shell of 7 x 9 nodes, curved, and its untwist by 4 degrees from root to tip; places off it by up to a tenth of its size.
+/// A shell of 7 x 9 nodes, curved, and its untwist by 4 degrees from root to tip; places off it by up to a tenth of its
+/// size.
 class CoarseShell {
  public:
   explicit CoarseShell(unsigned seed) : random_(seed) {
@@ -135,7 +136,8 @@ class CoarseShell {
   std::mt19937 random_;
 };
 
-/// Places of which every other one is the hot place of a cold one, the rest anywhere: some of these lie in gaps that the field leaves.
+/// Places of which every other one is the hot place of a cold one, the rest anywhere: some of these lie in gaps that
+/// the field leaves.
 TEST(InverseField, ComesBackFromCoarseShellsWhereIterationsWouldGoToAndFro) {
   constexpr double all = 1;
   Index held = 0;

@@ -1,7 +1,7 @@
 // Passages whose inlet, exit and mixing plane are planes, cones and curved surfaces of revolution, one row and two.
 //
-// The demo passage is bent along the axis by a function of the radius: circles about the axis stay such, so every surface of
-// revolution stays one, and where a node is on it follows from the formula.
+// The demo passage is bent along the axis by a function of the radius: circles about the axis stay such, so every
+// surface of revolution stays one, and where a node is on it follows from the formula.
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 #include "support/periodic_match.hpp"

@@ -1,5 +1,5 @@
-// Near fields that turn in passages whose blade and end walls are resolved: first cells of micrometres beside lines along the chord whose
-// nodes are millimetres apart.
+// Near fields that turn in passages whose blade and end walls are resolved: first cells of micrometres beside lines
+// along the chord whose nodes are millimetres apart.
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 

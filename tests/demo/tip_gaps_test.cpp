@@ -1,6 +1,8 @@
-// Passages with a gap over a flat tip, a squealer or a groove: what the morph has to keep where blade and case come close.
+// Passages with a gap over a flat tip, a squealer or a groove: what the morph has to keep where blade and case come
+// close.
 //
-// A tip lies at a constant span fraction, so the height of the gap after a motion follows from the formula of the motion.
+// A tip lies at a constant span fraction, so the height of the gap after a motion follows from the formula of the
+// motion.
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 #include "support/periodic_match.hpp"
@@ -63,8 +65,8 @@ PlanOptions near_field_of_the_blade() {
 
 double radius_of(Vec3 const& p) { return std::hypot(p.y, p.z); }
 
-/// By how much heights of cells change over the tips, as a factor on what the gap itself changes by: smallest and largest.
-/// Columns are followed from the tip to the case, through all zones.
+/// By how much heights of cells change over the tips, as a factor on what the gap itself changes by: smallest and
+/// largest. Columns are followed from the tip to the case, through all zones.
 struct Shares {
   double lowest = 1e9, highest = 0, lowest_gap = 1e9, highest_gap = 0;
   int columns = 0;
@@ -186,8 +188,8 @@ TEST_P(TipGaps, CellsShareEvenlyWhatTheGapChangesByAndNoneIsInverted) {
   }
 }
 
-/// What `follow` asks of the sides of the passage beside the blade: to the tip as the blade does, and of the gap above it the same share at all heights. So no node
-/// of theirs has to be put back onto the case.
+/// What `follow` asks of the sides of the passage beside the blade: to the tip as the blade does, and of the gap above
+/// it the same share at all heights. So no node of theirs has to be put back onto the case.
 TEST_P(TipGaps, SidesFollowTheBladeToItsTipAndShareTheGapAbove) {
   double const factor = 0.2, gap = options.tip_gap;
   Outcome const out = morph(mesh, motion_of(options, {"gap", 0, {}, factor}), near_field_of_the_blade());

@@ -64,7 +64,8 @@ class Example : public ::testing::Test {
     return "GRIDMORPH_MESHES= '" GRIDMORPH_EXAMPLES "/run' --gridmorph '" GRIDMORPH_EXECUTABLE "' --meshes '" + meshes +
            "' --out '" + folder_.string() + "' " + name;
   }
-  /// Where examples/run puts the mesh of an example: beside its case file if it is made, in a folder "meshes" if it is the project's.
+  /// Where examples/run puts the mesh of an example: beside its case file if it is made, in a folder "meshes" if it is
+  /// the project's.
   [[nodiscard]] std::string mesh_of(std::string const& name, std::string const& mesh) const {
     auto const made = path(name + "/" + mesh);
     return std::filesystem::exists(made) ? made : path(name + "/meshes/" + mesh);
@@ -94,7 +95,8 @@ class Example : public ::testing::Test {
     expect_interfaces_closed();
   }
 
-  /// Copies that coincide in the baseline do so bit for bit afterwards; others keep their distance to round-off, a share of the size.
+  /// Copies that coincide in the baseline do so bit for bit afterwards; others keep their distance to round-off, a
+  /// share of the size.
   void expect_interfaces_closed(double round_off = 1e-14) const {
     for (auto const& link : before.interfaces) {
       if (link.periodic) continue;

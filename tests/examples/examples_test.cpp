@@ -1,4 +1,5 @@
-// Every example runs through and does what its case file says, measured with the formulas of the case files written anew.
+// Every example runs through and does what its case file says, measured with the formulas of the case files written
+// anew.
 #include "example_run.hpp"
 #include "motion/plain_splines.hpp"
 #include "support/reduced.hpp"
@@ -30,7 +31,8 @@ TEST_F(Example, TurbineStageTurnsEachRowByItsOwnAngleAndSlidesOnItsEnds) {
   expect_turn("BLADE2", 0.21, 38.6, [](double r) { return 3 + 4 * (r - 0.92) / 0.15; });
 
   expect_periodic_copies_move_alike(0);
-  // The motion is purely circumferential; on hub and case near fields turn with the blades, along profiles that rise by less than a half.
+  // The motion is purely circumferential; on hub and case near fields turn with the blades, along profiles that rise by
+  // less than a half.
   for (std::string const wall : {"HUB", "SHROUD", "INLET", "OUTLET", "MIXING"})
     for_patch(wall, "", [&](Index n) {
       Cylindrical const u = motion(n, 0);
@@ -177,7 +179,8 @@ TEST_F(Example, WingReachesItsTargetSurface) {
   EXPECT_EQ(report["targets"][0]["mapping"], "projection");
   EXPECT_LT(report["targets"][0]["distance"]["max"], 1e-13 * 14);
   EXPECT_EQ(contents(path("wing_target/log.txt")).find("fold"), std::string::npos);
-  // The root stays the root; the corners of the trailing edge's base at the tip go to the target's: where the formula puts them.
+  // The root stays the root; the corners of the trailing edge's base at the tip go to the target's: where the formula
+  // puts them.
   int corners = 0;
   for_patch("wall", "", [&](Index n) {
     Vec3 const p = before.coordinates[n];
@@ -539,8 +542,8 @@ TEST_F(Example, WingFlutterFollowsTheBeamThatItsPlateWasMadeBy) {
       shell("cd '" + path("wing_flutter") + "' && '" GRIDMORPH_EXECUTABLE "' morph wing_flutter.toml -o s_{step}.cgns"),
       0)
       << contents(path("err"));
-  // First step: bending alone. A thin wing turns its skin with the slope of the beam; the plate has 8 elements along the
-  // span, whose chords are off the beam by their length squared times its curvature over 8: 0.007.
+  // First step: bending alone. A thin wing turns its skin with the slope of the beam; the plate has 8 elements along
+  // the span, whose chords are off the beam by their length squared times its curvature over 8: 0.007.
   after = read_mesh(path("wing_flutter/s_01.cgns"));
   constexpr double beta = 1.8751040687, sigma = 0.7340955137;
   for_patch("wall", "", [&](Index n) {

@@ -1,4 +1,5 @@
-// Every example with its mesh in single precision, as many meshers and solvers hand meshes over: what runs in double precision runs.
+// Every example with its mesh in single precision, as many meshers and solvers hand meshes over: what runs in double
+// precision runs.
 #include "example_run.hpp"
 #include "support/reduced.hpp"
 
@@ -25,7 +26,8 @@ std::string found_in(std::string const& text, char const* pattern) {
   return std::regex_search(text, match, std::regex(pattern)) ? match[1].str() : "";
 }
 
-/// Rounds the coordinates to single precision. Files of CGNS say that they keep them so; those of SU2 are text, with digits enough.
+/// Rounds the coordinates to single precision. Files of CGNS say that they keep them so; those of SU2 are text, with
+/// digits enough.
 void write_in_single_precision(std::string const& from, std::string const& to) {
   Mesh mesh = read_mesh(from);
   Coordinates rounded(mesh.n_nodes());

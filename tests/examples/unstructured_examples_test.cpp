@@ -1,4 +1,5 @@
-// The examples with unstructured meshes: walls where the case file asks for them, neighbours of a wall as one, nothing inverted.
+// The examples with unstructured meshes: walls where the case file asks for them, neighbours of a wall as one, nothing
+// inverted.
 #include "example_run.hpp"
 
 #include <gridmorph/io/mesh_io.hpp>
@@ -56,8 +57,8 @@ TEST_P(CoilExample, HeatingCoilSagsAsABeamInBothZonesAlikeAndItsDuctSlidesOnItsC
   EXPECT_EQ(outside.size(), GetParam() ? 1752u : 2261u);
   EXPECT_GT(lowest, GetParam() ? 0.19 : 0.199);
 
-  // A duct of radius 1, and a body of radius 0.5 in it whose middle is read off the mesh. The stand-in's is held by a strut, whose sides are
-  // planes.
+  // A duct of radius 1, and a body of radius 0.5 in it whose middle is read off the mesh. The stand-in's is held by a
+  // strut, whose sides are planes.
   std::vector<Index32> duct, body, strut;
   for (Index32 const n : nodes_of("FluidZone Default")) {
     double const x = mesh.coordinates.x(n), y = mesh.coordinates.y(n), r = std::hypot(x, y);

@@ -252,8 +252,8 @@ TEST(Fillet, ARadiusThatDoesNotFitComesWithOneThatDoes) {
 }
 
 TEST(Fillet, RunsOutBeforeItsOwnEndsAlone) {
-  // A channel between two blades over a hub, the one on the left a quarter as long as the channel: its end lies across from the middle of the
-  // other one, nearer than the fillet runs out over.
+  // A channel between two blades over a hub, the one on the left a quarter as long as the channel: its end lies across
+  // from the middle of the other one, nearer than the fillet runs out over.
   Index3 const extent{33, 41, 21};
   double const radius = 0.03, width = 0.2;
   test::MeshBuilder builder("channel");

@@ -1,4 +1,5 @@
-// Affine displacements, planes and normals through points whose answers are known, in any position; points that do not say enough.
+// Affine displacements, planes and normals through points whose answers are known, in any position; points that do not
+// say enough.
 #include "support/random.hpp"
 
 #include <gridmorph/geometry/affine_fit.hpp>
@@ -118,8 +119,8 @@ TEST(PlaneFit, OfALineOrAPointIsNotDetermined) {
   EXPECT_TRUE(fit_plane(points_in({1, 1e-3, 0}, 10, place, random)).determined);
 }
 
-/// Of z = height(x, y) over n points of a disc of radius h, seen at an angle: the angle between normals at (0, 0), where the
-/// slopes of the height are (1, 0.5).
+/// Of z = height(x, y) over n points of a disc of radius h, seen at an angle: the angle between normals at (0, 0),
+/// where the slopes of the height are (1, 0.5).
 double error_of_normal(double h, int n) {
   Random random(9);
   RigidTransform const place = placed(random);

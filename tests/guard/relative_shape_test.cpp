@@ -1,4 +1,5 @@
-// The relative shape of a corner: derivatives against differences, what leaves it alone, and the exact update by a move.
+// The relative shape of a corner: derivatives against differences, what leaves it alone, and the exact update by a
+// move.
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
 

@@ -42,7 +42,8 @@ Smoothed smooth(Outcome const& run, Coordinates const& morphed, HostInstance con
   return out;
 }
 
-/// Least and largest number of cells that are inside out at a corner, or that the certificate finds broken: it counts most of the others too.
+/// Least and largest number of cells that are inside out at a corner, or that the certificate finds broken: it counts
+/// most of the others too.
 std::pair<Index, Index> inside_out(Mesh const& mesh, Coordinates const& x) {
   QualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(x);

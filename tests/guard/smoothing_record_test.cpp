@@ -1,5 +1,5 @@
-// A guard frozen into a plan of blocks: it gives back what was recorded, is linear, and keeps what smoothing keeps; on one mesh of each kind
-// of topology.
+// A guard frozen into a plan of blocks: it gives back what was recorded, is linear, and keeps what smoothing keeps; on
+// one mesh of each kind of topology.
 #include "invariants/cases.hpp"
 #include "support/morph_run.hpp"
 #include "support/transpose_check.hpp"

@@ -1,4 +1,5 @@
-// Morphs that every invariant is checked on: one of each kind of topology, with motions that reach all parts of the plan.
+// Morphs that every invariant is checked on: one of each kind of topology, with motions that reach all parts of the
+// plan.
 #pragma once
 
 #include "support/motions.hpp"

@@ -17,7 +17,8 @@
 namespace gridmorph::test {
 namespace {
 
-/// Of the mesh that it makes: largest distance of nodes from where the map takes them, and how the smallest determinant changes.
+/// Of the mesh that it makes: largest distance of nodes from where the map takes them, and how the smallest determinant
+/// changes.
 void expect_common(Mesh const& mesh, Motion const& motion, Map const& map, std::string const& what) {
   Outcome const run = morph_split(mesh, motion);
   EXPECT_LE(distance_from(run, map), 1e-12) << what;

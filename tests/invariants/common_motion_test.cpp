@@ -119,7 +119,8 @@ TEST(CommonMotionOfParts, KeepsPlanesThatNodesSlideOn) {
 }
 
 TEST(CommonMotionOfParts, IsTakenOffWhereWallsMoveBesideIt) {
-  // Turned as a whole, and the body by a little besides: as the little turn alone, seen from the frame that turns, but for what is small of second order.
+  // Turned as a whole, and the body by a little besides: as the little turn alone, seen from the frame that turns, but
+  // for what is small of second order.
   Mesh const mesh = o_grid(0.8, 12);
   RigidTransform const whole = rotation_about({0, 0, 0}, {1, 2, 3}, 1.3),
                        little = rotation_about({0.1, 0, 0}, {0, 0, 1}, 0.01);

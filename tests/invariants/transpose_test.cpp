@@ -50,7 +50,8 @@ TEST_P(Transpose, DoesNotDependOnWhatWasMorphedBefore) {
 }
 
 TEST_P(Transpose, LeavesTheSecondOrderOfATaylorSeries) {
-  // J = sum of w . u + |u|^2 / 2 from half the motion on: what J makes beyond its slope falls by four where the step falls by two.
+  // J = sum of w . u + |u|^2 / 2 from half the motion on: what J makes beyond its slope falls by four where the step
+  // falls by two.
   PreparedMorph const prepared = prepare(GetParam().mesh(), GetParam().motion(1), GetParam().options);
   using Exec = Kokkos::DefaultHostExecutionSpace;
   auto const at = linearised<Exec>(prepared);
@@ -82,8 +83,8 @@ TEST_P(Transpose, LeavesTheSecondOrderOfATaylorSeries) {
 }
 
 TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo) {
-  // Nodes whose displacement is given slide where their patch meets a slip surface: what leads off it is taken out of positions, so it has to be
-  // out of rates as well.
+  // Nodes whose displacement is given slide where their patch meets a slip surface: what leads off it is taken out of
+  // positions, so it has to be out of rates as well.
   PreparedMorph const prepared = prepare(GetParam().mesh(), GetParam().motion(1), GetParam().options);
   using Exec = Kokkos::DefaultHostExecutionSpace;
   auto const at = linearised<Exec>(prepared);
@@ -102,7 +103,8 @@ TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo
   };
   Coordinates const v = at.forwards(rate);
   std::vector<double> off(std::size_t(v.size()), std::numeric_limits<double>::infinity());
-  // A long step goes over bends of facets, which are small beside some meshes; a short one is within what given nodes may be off a surface that scatters.
+  // A long step goes over bends of facets, which are small beside some meshes; a short one is within what given nodes
+  // may be off a surface that scatters.
   for (double const h : {1e-6 * size, 1e-8 * size}) {
     Coordinates const ahead = displacements(h), here = displacements(0), behind = displacements(-h);
     for (Index n = 0; n < v.size(); ++n) {

@@ -1,5 +1,6 @@
-// Meshes for tests of files: a curved brick cut into a lattice of blocks, each in a random orientation, with every contact
-// between blocks as a pair of 1-to-1 interfaces. Where nodes coincide is known from the lattice, not from the code under test.
+// Meshes for tests of files: a curved brick cut into a lattice of blocks, each in a random orientation, with every
+// contact between blocks as a pair of 1-to-1 interfaces. Where nodes coincide is known from the lattice, not from the
+// code under test.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>

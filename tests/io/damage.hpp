@@ -30,7 +30,8 @@ inline bool is_mesh_or_error(std::string const& path) {
   }
 }
 
-/// Cuts a file everywhere behind `begin` (every step-th byte): what lacks more than its last `harmless` bytes is refused.
+/// Cuts a file everywhere behind `begin` (every step-th byte): what lacks more than its last `harmless` bytes is
+/// refused.
 inline void expect_refused_where_cut(std::string const& bytes, std::string const& path, std::size_t step,
                                      std::size_t harmless, std::size_t begin = 0) {
   for (std::size_t length = begin; length < bytes.size(); length += step) {

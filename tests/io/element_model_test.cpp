@@ -206,8 +206,8 @@ TEST(ElementModel, SplitsElementsOfSecondOrderAtAllTheirNodes) {
 }
 
 TEST(ElementModel, EverySolidIsClosed) {
-  // Corners of the unit cube and, for elements of second order, the middle of every edge in the order of the standard. The
-  // vector areas of a closed surface add up to zero, whatever the numbering of its faces.
+  // Corners of the unit cube and, for elements of second order, the middle of every edge in the order of the standard.
+  // The vector areas of a closed surface add up to zero, whatever the numbering of its faces.
   std::vector<Vec3> const corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   std::vector<std::array<int, 2>> const edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5},

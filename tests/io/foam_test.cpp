@@ -226,8 +226,8 @@ struct FoamBox {
   }
 };
 
-/// A mesh cut into parts as decomposePar does it: a folder processor<p> with the cells that part(cell) says. Of each part's points their
-/// number in the whole mesh.
+/// A mesh cut into parts as decomposePar does it: a folder processor<p> with the cells that part(cell) says. Of each
+/// part's points their number in the whole mesh.
 class Cut {
  public:
   Cut(FoamLists const& whole, int n_parts, std::function<int(std::int64_t)> part)

@@ -1,4 +1,5 @@
-// Meshes of Gmsh, made here by a writer of their own: versions, text and binary, groups, periodic links, second order, damage.
+// Meshes of Gmsh, made here by a writer of their own: versions, text and binary, groups, periodic links, second order,
+// damage.
 #include "io/damage.hpp"
 #include "io/second_order.hpp"
 #include "support/expect_error.hpp"
@@ -280,7 +281,8 @@ int msh_type(ElementType type) {
   }
 }
 
-/// The elements of a mesh, its patches as surfaces 1, 2, ... of physical groups 11, 12, ...; node numbers far apart and in no order.
+/// The elements of a mesh, its patches as surfaces 1, 2, ... of physical groups 11, 12, ...; node numbers far apart and
+/// in no order.
 MshMesh msh_of(Mesh const& mesh) {
   MshMesh out;
   auto const tag = [&](Index n) {
@@ -382,7 +384,8 @@ TEST_P(Gmsh, ElementsOfSeveralGroupsAreOnePatchOfAllOfThem) {
   EXPECT_EQ(mesh.patches[3].name, "physical surface 44");
 }
 
-/// The elements of each piece of geometry in two parts, and the faces where the parts of the volume meet, which are of its physical group.
+/// The elements of each piece of geometry in two parts, and the faces where the parts of the volume meet, which are of
+/// its physical group.
 MshMesh in_parts(MshMesh whole) {
   MshMesh out = whole;
   out.blocks.clear();

@@ -1,5 +1,5 @@
-// HDF5 files made to break readers: attributes that overflow buffers, links in circles, coordinates that are kept somewhere else,
-// arrays without end. Changed with HDF5 itself.
+// HDF5 files made to break readers: attributes that overflow buffers, links in circles, coordinates that are kept
+// somewhere else, arrays without end. Changed with HDF5 itself.
 #include "block_lattice.hpp"
 #include "io_support.hpp"
 

@@ -142,7 +142,8 @@ TEST_P(Plot3d, OverwrittenBytesGiveAMeshOrAnErrorAndNothingElse) {
   }
 }
 
-// 1, a, b can be one zone of a x b nodes, or the extents of a zone of 1 x a x b; x, y, z have as many bytes as x, y, iblank.
+// 1, a, b can be one zone of a x b nodes, or the extents of a zone of 1 x a x b; x, y, z have as many bytes as x, y,
+// iblank.
 TEST(Plot3dFiles, ThatCouldBeSeveralThingsMustBeStated) {
   TemporaryFolder const folder;
   auto const path = folder.file("plane.p3d");

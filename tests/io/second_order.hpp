@@ -27,7 +27,8 @@ inline std::vector<Vec3> places_amid(ElementType type, std::vector<std::vector<i
   return out;
 }
 
-/// Of the one element of a mesh: nodes behind the corners lie amid its edges, then amid its quadrilateral faces, in the order of the SIDS.
+/// Of the one element of a mesh: nodes behind the corners lie amid its edges, then amid its quadrilateral faces, in the
+/// order of the SIDS.
 inline void expect_nodes_amid(Mesh const& mesh) {
   ElementType const type = mesh.elements.type[0];
   auto const nodes = mesh.elements.nodes[0];

@@ -137,7 +137,8 @@ TEST(Solution, RindPlanesOfARealFileArePassedOver) {
   EXPECT_NEAR(*std::min_element(p.begin(), p.end()), 0.61, 0.01);
 }
 
-/// Coarse cells: the shock on the upper side, from 4 m behind the nose at the root to 8 m near the tip, is spread so far that the normal Mach number stays below 1.
+/// Coarse cells: the shock on the upper side, from 4 m behind the nose at the root to 8 m near the tip, is spread so
+/// far that the normal Mach number stays below 1.
 TEST(Solution, TheShockOfTheWingIsOneSheetAndItsWayIsThatOfTheMesh) {
   std::string const path = shared_mesh("mdo_tutorial_000_vol.cgns");
   Mesh const mesh = read_mesh(path);

@@ -132,7 +132,8 @@ Mesh all_volumes() {
   return out;
 }
 
-/// Nodes of a pyramid as a file lists them, by their places in the SIDS: the base is its 1st, 4th, 5th and 2nd, the apex its 3rd.
+/// Nodes of a pyramid as a file lists them, by their places in the SIDS: the base is its 1st, 4th, 5th and 2nd, the
+/// apex its 3rd.
 constexpr std::array<std::size_t, 5> as_ugrid{0, 3, 4, 1, 2}, other_way_round{0, 1, 4, 3, 2};
 
 class Ugrid : public testing::TestWithParam<Storage> {

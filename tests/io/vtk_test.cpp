@@ -1,4 +1,5 @@
-// Meshes in VTK's XML format, made here by a writer of their own: all ways to store arrays, patches, polyhedra, fields, damage.
+// Meshes in VTK's XML format, made here by a writer of their own: all ways to store arrays, patches, polyhedra, fields,
+// damage.
 #include "io/damage.hpp"
 #include "io/second_order.hpp"
 #include "support/expect_error.hpp"
@@ -441,7 +442,8 @@ TEST_F(VtuRead, WhatIsWrittenIsReadAgain) {
   }
 }
 
-/// In the order of vtkQuadraticTetra, vtkQuadraticPyramid, vtkBiQuadraticQuadraticWedge and vtkTriQuadraticHexahedron; and back.
+/// In the order of vtkQuadraticTetra, vtkQuadraticPyramid, vtkBiQuadraticQuadraticWedge and vtkTriQuadraticHexahedron;
+/// and back.
 TEST_F(VtuRead, NodesOfSecondOrderElementsComeInTheOrderOfTheStandard) {
   struct Case {
     ElementType type;

@@ -66,7 +66,8 @@ TEST(LineLaw, CubicsHaveTheSlopesThatTheyAreGiven) {
 }
 
 TEST(LineLaw, TablesAreTheCubicsThroughTheirKnots) {
-  // Any cubic with w(0) = 0 is its own table, however many knots it has; a second table in front moves the first one along.
+  // Any cubic with w(0) = 0 is its own table, however many knots it has; a second table in front moves the first one
+  // along.
   auto const w = [](double s) { return s * (0.25 + s * (2.5 - 1.75 * s)); };
   auto const slope = [](double s) { return 0.25 + s * (5 - 5.25 * s); };
   for (int const n : {1, 3, 8}) {

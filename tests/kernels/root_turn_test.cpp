@@ -32,8 +32,8 @@ Vec3 raw_turn(kernels::RootTable<Host> const& table, Arrays& u, Arrays& rate, Ve
   return raw.read()[0];
 }
 
-/// Slot 0 at the corner of a body where three faces meet, its neighbours along the edges at slots 1 to 3, cells as flat as those of
-/// boundary layers are; a line that leans to one face.
+/// Slot 0 at the corner of a body where three faces meet, its neighbours along the edges at slots 1 to 3, cells as flat
+/// as those of boundary layers are; a line that leans to one face.
 struct Corner {
   std::array<Vec3, 3> arm;
   Vec3 line;
@@ -106,7 +106,8 @@ TEST(RootTurn, OfARigidBodyIsItsRotationAtItsEdgesToo) {
   }
 }
 
-/// A blade where it stands on the hub of an annulus that widens to both ends: x(a, h), a along the chord, h along the span.
+/// A blade where it stands on the hub of an annulus that widens to both ends: x(a, h), a along the chord, h along the
+/// span.
 struct Section {
   double stagger, chord;
   [[nodiscard]] Vec3 at(double a, double h) const {
@@ -120,8 +121,8 @@ struct Section {
   }
 };
 
-// The lines along the chord follow the annulus: beside the span's first cells they sag by more than these are high, to one side before and
-// to the other one after.
+// The lines along the chord follow the annulus: beside the span's first cells they sag by more than these are high, to
+// one side before and to the other one after.
 TEST(RootTurn, IsThatOfShortArmsToo) {
   Section const before{0.6, 1}, after{0.2, 0.95};
   std::array<Vec3, 3> const from = before.axes(), to = after.axes();
@@ -233,7 +234,8 @@ TEST(RootTurn, HasTheRateThatDifferencesHaveAtEdges) {
 /// The rotation by an angle in degrees, whose mean the body has.
 Vec3 about(Vec3 const& axis, double degrees) { return std::tan(degrees * std::numbers::pi / 720) * axis; }
 
-// Half a turn of a body that is deformed besides: whatever a node turns by, it goes the way of the body, with its rates.
+// Half a turn of a body that is deformed besides: whatever a node turns by, it goes the way of the body, with its
+// rates.
 TEST(RootTurn, GoesTheWayOfItsBody) {
   Random random(7);
   for (double const degrees : {100.0, 125.0, 150.0, 178.0, 180.0, 182.0, 200.0})
@@ -261,7 +263,8 @@ TEST(RootTurn, StaysTheShorterWayWithoutABody) {
   EXPECT_LT(distance(corner.found(about(axis, 170)), about(axis, -160)), 1e-12);
 }
 
-// What is between a wall that goes the longer way round and an outer edge that hands on none or a part of its turn goes that way too.
+// What is between a wall that goes the longer way round and an outer edge that hands on none or a part of its turn goes
+// that way too.
 TEST(NearFieldLines, GoTheWayOfTheirWall) {
   Vec3 const axis{0.48, -0.6, 0.64}, y{1, 2, -0.5};
   kernels::RootTable<Host> table;

@@ -1,4 +1,5 @@
-// Nodes on slip surfaces, by both kernels that ask the surfaces: against planes and circles, and differences of themselves.
+// Nodes on slip surfaces, by both kernels that ask the surfaces: against planes and circles, and differences of
+// themselves.
 #include "kernels/tables.hpp"
 #include "support/random.hpp"
 

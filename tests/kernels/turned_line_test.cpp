@@ -1,4 +1,5 @@
-// Shares of rotations by quaternions, and what ends that turn add to a line, against matrices of rotation and differences.
+// Shares of rotations by quaternions, and what ends that turn add to a line, against matrices of rotation and
+// differences.
 #include "support/random.hpp"
 
 #include <gridmorph/geometry/rigid_transform.hpp>

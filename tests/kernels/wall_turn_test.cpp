@@ -305,7 +305,8 @@ TEST(WallTurn, HasTheRateThatDifferencesHave) {
     }
 }
 
-// In the plane z = 0, cells of any aspect ratio: the polar rotation of F by its singular values' closed form in two dimensions.
+// In the plane z = 0, cells of any aspect ratio: the polar rotation of F by its singular values' closed form in two
+// dimensions.
 TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
   Random random(7);
   for (int n = 0; n < 50; ++n) {
@@ -325,7 +326,8 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
   }
 }
 
-// A spike of the wall with an edge along its normal: what round-off leaves of that edge across the normal must decide nothing.
+// A spike of the wall with an edge along its normal: what round-off leaves of that edge across the normal must decide
+// nothing.
 TEST(WallTurn, IsThatOfTheOtherArmsWhereOneIsAlongTheNormal) {
   Random random(8);
   for (int n = 0; n < 50; ++n) {

@@ -264,7 +264,8 @@ TEST_F(Manners, PlanningLaunchesOnTheHostOnlyWhatReadsTheWholeMesh) {
 }
 
 #ifdef KOKKOS_ENABLE_SERIAL
-/// What Kokkos launches on its default space, whatever the instance: copies of long lists of the host, and the end of Views.
+/// What Kokkos launches on its default space, whatever the instance: copies of long lists of the host, and the end of
+/// Views.
 bool is_of_kokkos(std::string const& kernel) {
   return kernel.find("Kokkos::Impl::host_space_deepcopy") == 0 || kernel.find("Kokkos::View::destruction") == 0;
 }
@@ -291,7 +292,8 @@ TEST_F(Manners, PlanningLaunchesOnTheInstanceThatIsHandedOver) {
 }
 #endif
 
-/// An unstructured morph with every kind of kernel: columns, layers, background mesh, other boundaries, nodes of two zones.
+/// An unstructured morph with every kind of kernel: columns, layers, background mesh, other boundaries, nodes of two
+/// zones.
 class UnstructuredManners : public ::testing::Test {
  protected:
   static bool in_body(Vec3 const& x) { return x.x > 4 && x.x < 8 && x.y > 4 && x.y < 8 && x.z > 4 && x.z < 8; }

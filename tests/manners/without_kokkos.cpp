@@ -1,5 +1,5 @@
-// A program that forgot to initialise Kokkos, or uses the library after Kokkos was finalised: one clear error each, no abort.
-// A program of its own, because test programs run inside Kokkos from beginning to end.
+// A program that forgot to initialise Kokkos, or uses the library after Kokkos was finalised: one clear error each, no
+// abort. A program of its own, because test programs run inside Kokkos from beginning to end.
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>

@@ -329,8 +329,8 @@ TEST(FacetSurface, PointsAnywhereHaveAFoot) {
   }
 }
 
-/// Columns of an H grid around the round nose of a hole in the plane z = 0: behind the nose grid lines turn by eighty degrees, so that local
-/// coordinates of the facets there fold.
+/// Columns of an H grid around the round nose of a hole in the plane z = 0: behind the nose grid lines turn by eighty
+/// degrees, so that local coordinates of the facets there fold.
 TEST(FacetSurface, KinkedGridLinesHaveAFootForEveryPoint) {
   std::array<double, 15> const x{-5.355, -3.732, -2.478, -1.594, -.97,  -.53,  -.219, 0,
                                  .219,   .512,   .903,   1.426,  2.121, 3.041, 4.252};

@@ -1,4 +1,5 @@
-// Lattices of control points: weights against the definitions of the polynomials, places in lattices of any shape against the map itself.
+// Lattices of control points: weights against the definitions of the polynomials, places in lattices of any shape
+// against the map itself.
 #include "plain_splines.hpp"
 #include "support/expect_error.hpp"
 #include "support/random.hpp"

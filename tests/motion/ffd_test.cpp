@@ -1,4 +1,5 @@
-// The ffd rule on patches: against plain sums of polynomials, translations and linear fields; how it ends at the faces of its box.
+// The ffd rule on patches: against plain sums of polynomials, translations and linear fields; how it ends at the faces
+// of its box.
 #include "moved_nodes.hpp"
 #include "plain_splines.hpp"
 #include "support/expect_error.hpp"

@@ -1,8 +1,8 @@
 // Surface meshes of a radial impeller, made from formulas that the tests use as their oracle.
 //
-// Hub and case are quarter circles about one centre in the meridional plane: the flow enters along the axis and leaves along
-// the radius. So (fraction of the arc length, span fraction) are polar coordinates about that centre. The row has main blades
-// and splitter blades half a pitch beside them.
+// Hub and case are quarter circles about one centre in the meridional plane: the flow enters along the axis and leaves
+// along the radius. So (fraction of the arc length, span fraction) are polar coordinates about that centre. The row has
+// main blades and splitter blades half a pitch beside them.
 #pragma once
 
 #include "annulus.hpp"

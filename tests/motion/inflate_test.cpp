@@ -52,7 +52,8 @@ Mesh around_a_cube() {
   return make(bricks);
 }
 
-/// One zone on a surface: (a, b) in [0, 1]^2, and its third direction from the surface into the mesh. Walls "body", and the others.
+/// One zone on a surface: (a, b) in [0, 1]^2, and its third direction from the surface into the mesh. Walls "body", and
+/// the others.
 Mesh shell(int n, std::function<Vec3(double a, double b, double off)> const& position) {
   MeshBuilder builder("shell");
   int const zone = builder.zone("shell", {n, n, 2}, [=](Index3 const& at) {

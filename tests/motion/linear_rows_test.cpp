@@ -1,5 +1,5 @@
-// Linear cascades: rows whose periodic sides are a translation apart. The oracle is the same cascade bent into an annulus, whose
-// motion comes nearer with its radius.
+// Linear cascades: rows whose periodic sides are a translation apart. The oracle is the same cascade bent into an
+// annulus, whose motion comes nearer with its radius.
 #include "support/cascade.hpp"
 #include "support/expect_error.hpp"
 

@@ -71,7 +71,8 @@ inline Vec3 plain_bezier(FfdRule const& rule, std::vector<Vec3> const& values, V
   return de_casteljau(planes, place.z);
 }
 
-/// One value for each control point, by its place among the control points where values linear in the place of a point keep it: the means of `degree` knots.
+/// One value for each control point, by its place among the control points where values linear in the place of a point
+/// keep it: the means of `degree` knots.
 inline std::vector<Vec3> at_control_points(FfdRule const& rule, std::function<Vec3(Vec3 const& place)> const& value) {
   auto const along = [&](std::size_t a, int n) {
     int const degree = rule.degree[a];

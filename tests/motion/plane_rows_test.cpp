@@ -1,5 +1,6 @@
-// Rows in a plane: a passage of plane elements around an axis across the plane, or beside others along a straight line. The oracles are the
-// same section between two planes, the formula of the blade's motion, and a straight row, whose motion comes nearer with the radius.
+// Rows in a plane: a passage of plane elements around an axis across the plane, or beside others along a straight line.
+// The oracles are the same section between two planes, the formula of the blade's motion, and a straight row, whose
+// motion comes nearer with the radius.
 #include "support/plane_cascade.hpp"
 #include "support/unstructured_case.hpp"
 
@@ -94,7 +95,8 @@ TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
   }
 }
 
-/// What the rules give both planes of a mesh of one cell across, by its nodes; the plane z = 0 as plane_cascade() counts its nodes.
+/// What the rules give both planes of a mesh of one cell across, by its nodes; the plane z = 0 as plane_cascade()
+/// counts its nodes.
 void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, Mesh const& plane,
                               std::vector<ByRule> const& wanted, Axis const& axis) {
   BoundaryMotion const motion{std::make_shared<Boundary const>(boundary),

@@ -10,8 +10,9 @@
 
 namespace gridmorph::test {
 
-/// The flow over [0, 16] x [0, 10] x [0, 3] in seven zones, its wall of family "plate", and below it two round holes of radius 1 and
-/// depth 2 around (5, 5) and (11, 5), each a zone with its walls and floor of family "hole_1" or "hole_2". Sides "u_min" ... "w_max".
+/// The flow over [0, 16] x [0, 10] x [0, 3] in seven zones, its wall of family "plate", and below it two round holes of
+/// radius 1 and depth 2 around (5, 5) and (11, 5), each a zone with its walls and floor of family "hole_1" or "hole_2".
+/// Sides "u_min" ... "w_max".
 inline Mesh plate_with_holes() {
   Bricks b;
   b.name = "plate";

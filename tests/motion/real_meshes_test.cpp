@@ -156,8 +156,8 @@ TEST_P(RealRow, PeriodicCopiesMoveAlike) {
   }
 }
 
-/// The two sides of the blade in this mesh are a pitch apart. Its own sections, turned and pushed along the axis, are a target that
-/// says where every node goes.
+/// The two sides of the blade in this mesh are a pitch apart. Its own sections, turned and pushed along the axis, are a
+/// target that says where every node goes.
 TEST_P(RealRow, SectionsOfTheBladeAsATargetMoveBothSidesOfIt) {
   Axis const axis = GetParam().axis;
   RigidTransform const moved = [&] {

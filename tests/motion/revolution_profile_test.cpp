@@ -238,8 +238,8 @@ TEST(RevolutionProfile, DoesNotDependOnTheUnit) {
 
 double wavy_step(double x) { return 0.45 + 0.01 * std::sin(12 * x) + 0.01 * std::tanh(6 * x); }
 
-/// Nodes as a passage with resolved walls has them: clusters a few micrometres wide, a centimetre apart; several nodes round the
-/// axis at each axial position.
+/// Nodes as a passage with resolved walls has them: clusters a few micrometres wide, a centimetre apart; several nodes
+/// round the axis at each axial position.
 Points clustered_points(double spacing, int in_cluster, double growth) {
   Points points;
   std::mt19937_64 random(11);

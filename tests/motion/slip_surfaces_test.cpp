@@ -351,8 +351,8 @@ TEST(SlipSurfaceView, PlaneAndAxialRemoveOneComponentOnly) {
   }
 }
 
-/// Two displacements of every point: by the first and by the second surface. (nvcc takes no device lambda inside TEST, which
-/// makes a private function.)
+/// Two displacements of every point: by the first and by the second surface. (nvcc takes no device lambda inside TEST,
+/// which makes a private function.)
 template <class Space>
 struct ConstrainByBoth {
   Kokkos::View<SlipSurfaceView const*, Space> surfaces;

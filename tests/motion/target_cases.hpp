@@ -41,8 +41,8 @@ inline Mesh shell_mesh(int ni = 13, int nj = 9) {
   return builder.finish();
 }
 
-/// A sharp-edged cambered section: t from 0 at the trailing edge over the upper side, 0.5 at the nose, 1 at the trailing
-/// edge. Chord 1.
+/// A sharp-edged cambered section: t from 0 at the trailing edge over the upper side, 0.5 at the nose, 1 at the
+/// trailing edge. Chord 1.
 inline Vec3 airfoil(double t) {
   double const root = std::cos(std::numbers::pi * t), x = root * root, sign = root >= 0 ? 1 : -1;
   double const odd = 0.2969 * root;

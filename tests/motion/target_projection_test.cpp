@@ -311,8 +311,9 @@ TEST(TargetProjection, NodesBesideSharpEdgesKeepTheirSideAndTheirOrder) {
   EXPECT_GT(shortest, 0);
 }
 
-/// A lens cut off at the trailing edge: a from 0 in the middle of the base, 0.003 high, over its corner at 1/40, the upper
-/// side, the nose at 0.5 and the lower side to the other corner at 39/40. Beside `crowd` 0 nodes close up to both edges.
+/// A lens cut off at the trailing edge: a from 0 in the middle of the base, 0.003 high, over its corner at 1/40, the
+/// upper side, the nose at 0.5 and the lower side to the other corner at 39/40. Beside `crowd` 0 nodes close up to both
+/// edges.
 Vec3 blunt(double a, double h, double crowd) {
   constexpr double corner = 1.0 / 40;
   double const side = a <= 0.5 ? 1 : -1, from_base = std::min(a, 1 - a);
@@ -324,8 +325,8 @@ Vec3 blunt(double a, double h, double crowd) {
 }
 
 TEST(TargetProjection, TheTwoLinesOfABluntTrailingEdgeStayApart) {
-  // They are nearer to one another than the bend of the span takes either of them off the way between its ends: the way of
-  // one may cross the base at root and tip and go along the other.
+  // They are nearer to one another than the bend of the span takes either of them off the way between its ends: the way
+  // of one may cross the base at root and tip and go along the other.
   MeshBuilder builder("blunt");
   int const zone = builder.zone("wing", {41, 9, 3}, [](Index3 const& p) {
     double const a = double(p[0] % 40) / 40;
@@ -396,7 +397,8 @@ Vec3 swept(Vec3 const& p) {
   return p + Vec3{2.5 * s * s * t, 0.3 * s * t, 0.5 * s * s * t};
 }
 
-// What another rule made of a surface with holes, given as a target: each hole is where it was, the sides too, and nothing folds.
+// What another rule made of a surface with holes, given as a target: each hole is where it was, the sides too, and
+// nothing folds.
 TEST(TargetProjection, RimsOfHolesGoToThoseOfTheTarget) {
   Mesh const mesh = plate_with_holes();
   Mesh const elements = to_hexahedra(mesh);

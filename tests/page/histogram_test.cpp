@@ -36,7 +36,8 @@ TEST(Histogram, CountsEveryCellOnceWhateverItsValue) {
   }
 }
 
-/// The bin by going through all edges: what lies below the first is in the first bin, what is not below the last in the last.
+/// The bin by going through all edges: what lies below the first is in the first bin, what is not below the last in the
+/// last.
 std::size_t bin_by_edges(std::vector<double> const& edge, double value) {
   std::size_t bin = 0;
   while (bin + 2 < edge.size() && value >= edge[bin + 1]) ++bin;

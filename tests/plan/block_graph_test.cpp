@@ -83,7 +83,8 @@ TEST(BlockGraph, PeriodicSidesJoinABlockToItself) {
   EXPECT_EQ(graph.interfaces[0].a, graph.interfaces[0].b);
 }
 
-/// What a person would see in the drawing: sizes of blocks, what joins them, and the stage and place of each in its chain, whatever the file.
+/// What a person would see in the drawing: sizes of blocks, what joins them, and the stage and place of each in its
+/// chain, whatever the file.
 using Seen = std::vector<std::tuple<Index, Index, bool, Index>>;
 Seen seen(BlockGraph const& graph) {
   Seen out;

@@ -163,7 +163,8 @@ TEST(CellQuality, CellWithoutVolumeIsFlatWithDefinedValues) {
   }
 }
 
-// A corner whose edges lie on a line, and a cell of no height, far from the origin: signs of their Jacobians are round-off.
+// A corner whose edges lie on a line, and a cell of no height, far from the origin: signs of their Jacobians are
+// round-off.
 TEST(CellQuality, JacobiansThatRoundOffDecidesAboutAreZeroInCellsOfAnySize) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> shift(-1, 1);

@@ -1,5 +1,5 @@
-// Cells measured in rows, several at once: against the plain reference cell by cell, and against the general functions of
-// single cells where a cell is degenerate. Every row length, so that whole and partly filled lanes are met.
+// Cells measured in rows, several at once: against the plain reference cell by cell, and against the general functions
+// of single cells where a cell is degenerate. Every row length, so that whole and partly filled lanes are met.
 #include <gridmorph/kernels/arc_cosine.hpp>
 #include <gridmorph/kernels/cell_row.hpp>
 

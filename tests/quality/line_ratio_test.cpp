@@ -1,4 +1,5 @@
-// Growth and face area ratios, relative displacements by grid direction, and regions by themselves, against plain loops and closed forms.
+// Growth and face area ratios, relative displacements by grid direction, and regions by themselves, against plain loops
+// and closed forms.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -182,7 +183,8 @@ std::vector<NamedCells> zones_as_regions(Mesh const& mesh) {
   return out;
 }
 
-/// The paper's measure, of a displacement that grows by a quarter of x and half of z: 1/4 and 1/2 along these, nothing along y.
+/// The paper's measure, of a displacement that grows by a quarter of x and half of z: 1/4 and 1/2 along these, nothing
+/// along y.
 TEST(RelativeDisplacement, HasAValuePerIndexDirectionOfEachZone) {
   for (Orientation const& orientation : test::all_orientations()) {
     Mesh const mesh = test::two_zones(orientation, true, 0);

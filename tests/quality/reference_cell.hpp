@@ -97,8 +97,9 @@ inline ReferenceCell reference(Corners const& c, double handedness) {
   return r;
 }
 
-/// The paper's section 3.2, for each grid direction: the largest relative displacement of two nodes of the cell that an edge along it joins, divided
-/// by the average length of the cell there. Edges 4 d to 4 d + 3 of edge_corners run along direction d.
+/// The paper's section 3.2, for each grid direction: the largest relative displacement of two nodes of the cell that an
+/// edge along it joins, divided by the average length of the cell there. Edges 4 d to 4 d + 3 of edge_corners run along
+/// direction d.
 inline std::array<double, 3> reference_relative_displacements(Corners const& before, Corners const& after) {
   std::array<double, 3> out{};
   for (int d = 0; d < 3; ++d) {

@@ -172,7 +172,8 @@ TEST(SurfaceWall, AgreesWithTheMeridionalDistanceOnWallsOfRevolution) {
 }
 
 TEST(SurfaceWall, GoesOnWhereABladeStandsOnIt) {
-  // The wall of an H mesh ends at the blade, which leans by a third of what it is wide: what was under it is no end of the wall.
+  // The wall of an H mesh ends at the blade, which leans by a third of what it is wide: what was under it is no end of
+  // the wall.
   ContouredWall const wall;
   double const pitch = 2 * pi / wall.waves, half = 0.2 * pitch;  // of the blade
   FacetList const list = grid(32, 32, [&](double a, double b) { return wall.place(a, half + b * (pitch - 2 * half)); });

@@ -1,4 +1,5 @@
-// A wall about the x axis that is of revolution nowhere, by formula, and the distance from it by search: an oracle for clearances.
+// A wall about the x axis that is of revolution nowhere, by formula, and the distance from it by search: an oracle for
+// clearances.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -7,7 +8,8 @@
 
 namespace gridmorph::test {
 
-/// Radius over angle and axial position: waves around the axis, as many as there are blades, that come and go between two ends.
+/// Radius over angle and axial position: waves around the axis, as many as there are blades, that come and go between
+/// two ends.
 struct ContouredWall {
   double radius = 0.9, amplitude = 0.03;
   int waves = 12;

@@ -23,7 +23,8 @@ Vec3 centre_of(Mesh const& mesh, Index e) {
   return (1.0 / double(corners.size())) * sum;
 }
 
-/// Elements of one zone after another with nodes of their own; `number` of a zone: old node -> new one, -1 where it has none.
+/// Elements of one zone after another with nodes of their own; `number` of a zone: old node -> new one, -1 where it has
+/// none.
 class Copier {
  public:
   explicit Copier(Mesh const& from) : from_(from) {

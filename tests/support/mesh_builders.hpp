@@ -1,8 +1,8 @@
 // Multi-block meshes made in memory: every kind of topology that real files have, small.
 //
-// Most are made of bricks: index boxes of one big index box whose nodes sit at position(u, v, w), (u, v, w) in [0, 1]^3.
-// Brick faces that meet are joined; opposite faces of the big box may close on themselves (O-grids) or be periodic.
-// Interfaces are stored from one side only; scramble() adds the other side here and there.
+// Most are made of bricks: index boxes of one big index box whose nodes sit at position(u, v, w), (u, v, w) in [0,
+// 1]^3. Brick faces that meet are joined; opposite faces of the big box may close on themselves (O-grids) or be
+// periodic. Interfaces are stored from one side only; scramble() adds the other side here and there.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -64,8 +64,8 @@ struct Bricks {
   std::vector<IndexRange> zones;  ///< boxes of nodes, bounding planes included; all of it when empty
   std::function<Vec3(Vec3 const&)> position;
   std::array<Wrap, 3> wrap{};
-  /// Family and kind of the six outer faces u_min, u_max, v_min, ...; faces inside the big box with no brick beyond them
-  /// are walls of family "step".
+  /// Family and kind of the six outer faces u_min, u_max, v_min, ...; faces inside the big box with no brick beyond
+  /// them are walls of family "step".
   std::array<std::string, 6> family{"u_min", "u_max", "v_min", "v_max", "w_min", "w_max"};
   std::array<PatchKind, 6> kind{PatchKind::wall,    PatchKind::inflow,   PatchKind::outflow,
                                 PatchKind::outflow, PatchKind::farfield, PatchKind::farfield};
@@ -83,8 +83,8 @@ Mesh bricks_with_t_junctions(unsigned seed);
 Mesh l_shape(unsigned seed);
 /// The middle brick of a 3 x 3 arrangement left out: a wall with blocks all round (family "step").
 Mesh around_a_box(unsigned seed);
-/// Annulus sector, w around the axis (arbitrary line), v from inner to outer radius, u along the axis. Families hub, case,
-/// inlet, outlet. inner_radius 0: a wedge whose v_min face (family "pole") is collapsed onto the axis.
+/// Annulus sector, w around the axis (arbitrary line), v from inner to outer radius, u along the axis. Families hub,
+/// case, inlet, outlet. inner_radius 0: a wedge whose v_min face (family "pole") is collapsed onto the axis.
 struct Sector {
   Vec3 origin{0.3, -0.2, 0.5};
   Vec3 axis{1, 2, -0.5};  ///< any length
@@ -97,10 +97,11 @@ Mesh annulus_sector(Sector const& sector, unsigned seed);
 Vec3 sector_position(Sector const& sector, double axial, double radius, double theta);
 /// Axial, radius, theta about the sector's axis.
 Vec3 sector_coordinates(Sector const& sector, Vec3 const& p);
-/// Annulus sector of the same axis and families whose flow path turns from axial to radial: hub and case are quarter circles
-/// about one centre in the meridional plane.
+/// Annulus sector of the same axis and families whose flow path turns from axial to radial: hub and case are quarter
+/// circles about one centre in the meridional plane.
 Mesh bend_sector(Sector const& sector, unsigned seed);
-/// O-grid: one zone whose ends in u meet, wall (family "body") at v_min, farfield at v_max; inner_radius 0: a pole line.
+/// O-grid: one zone whose ends in u meet, wall (family "body") at v_min, farfield at v_max; inner_radius 0: a pole
+/// line.
 Mesh o_grid(double inner_radius, unsigned seed);
 /// C-grid around a body with a blunt nose; the wake is an interface of the zone with itself, the wall a part of j_min.
 Mesh c_grid(unsigned seed);

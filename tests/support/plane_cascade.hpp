@@ -7,7 +7,8 @@
 
 namespace gridmorph::test {
 
-/// Where the straight section goes: x from -1.4 to 2.4, the blade from 0 to 1; t along the pitch, the sides plane_cascade_pitch apart. Into the plane z = 0.
+/// Where the straight section goes: x from -1.4 to 2.4, the blade from 0 to 1; t along the pitch, the sides
+/// plane_cascade_pitch apart. Into the plane z = 0.
 using PlaneMap = std::function<Vec3(double x, double t)>;
 constexpr double plane_cascade_pitch = 0.8;
 

@@ -97,7 +97,8 @@ class Plot3dFile {
     else
       raw(std::int32_t(count), out_);
   }
-  /// As gfortran does: the count before a part is negative when another follows, the count behind when another precedes.
+  /// As gfortran does: the count before a part is negative when another follows, the count behind when another
+  /// precedes.
   void close_record() {
     if (s_.kind != 'u') {
       out_ += record_ + (s_.kind == 'f' ? "\n" : "");

@@ -1,5 +1,5 @@
-// The paper's line sweep and the transfinite correction on one box of nodes, written from the formulas with plain loops:
-// the oracle for the library's kernels. Shares no code with them.
+// The paper's line sweep and the transfinite correction on one box of nodes, written from the formulas with plain
+// loops: the oracle for the library's kernels. Shares no code with them.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -61,9 +61,9 @@ inline Vec3 at_fraction(BoxField const& x, BoxField const& c, int a, int b, doub
 }
 
 /// All six faces known: the sweep plus the residuals on the four sides, blended by the Boolean sum of Gordon and Hall,
-/// dimension by dimension: edges, then what the sides have beyond their edges. Fractions A and B across are taken on the
-/// two end faces and varied linearly along each line. A side gives its residual at the fraction of its line that the
-/// node has of its own.
+/// dimension by dimension: edges, then what the sides have beyond their edges. Fractions A and B across are taken on
+/// the two end faces and varied linearly along each line. A side gives its residual at the fraction of its line that
+/// the node has of its own.
 template <class Weight>
 BoxField reference_transfinite(BoxField const& x, BoxField const& known, Weight const& weight) {
   BoxField const u = reference_sweep(x, known, weight);

@@ -176,7 +176,8 @@ ScrambledMesh scramble(Mesh const& mesh, Scramble const& what) {
 
 std::vector<std::string> flaws(Mesh const& mesh, double tolerance) {
   std::vector<std::string> found;
-  // Times each cell of each zone face is covered, by zone, axis and side; cells numbered as nodes of their lower corner.
+  // Times each cell of each zone face is covered, by zone, axis and side; cells numbered as nodes of their lower
+  // corner.
   std::vector<std::vector<int>> covered(6 * mesh.zones.size());
   for (std::size_t z = 0; z < mesh.zones.size(); ++z)
     for (int f = 0; f < 6; ++f) covered[6 * z + f].assign(mesh.zones[z].size(), 0);

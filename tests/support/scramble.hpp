@@ -1,5 +1,5 @@
-// The same mesh stored in another way: zones cut, turned, mirrored and renumbered, patches and interfaces in another order,
-// interfaces stored from either side or from both.
+// The same mesh stored in another way: zones cut, turned, mirrored and renumbered, patches and interfaces in another
+// order, interfaces stored from either side or from both.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>

@@ -11,7 +11,8 @@
 
 namespace gridmorph::test {
 
-/// Cells (r, theta, axial) of a sector: hexahedra, and prisms on the axis where it begins there, whose sides then meet in it.
+/// Cells (r, theta, axial) of a sector: hexahedra, and prisms on the axis where it begins there, whose sides then meet
+/// in it.
 struct Sector {
   double inner = 0, outer = 1, length = 1, angle = std::numbers::pi / 6;
   Index3 cells{4, 3, 6};
@@ -24,7 +25,8 @@ struct Sector {
   /// (r cos theta, r sin theta, axial) of a place.
   [[nodiscard]] Vec3 local(Vec3 const& x) const { return transpose(frame.rotation) * (x - frame.translation); }
 
-  /// Patches "hub" (unless it begins on the axis), "shroud", "inlet", "outlet", "per1", "per2", the latter joined by a connection "pair".
+  /// Patches "hub" (unless it begins on the axis), "shroud", "inlet", "outlet", "per1", "per2", the latter joined by a
+  /// connection "pair".
   [[nodiscard]] Mesh mesh() const {
     Mesh mesh;
     mesh.source = "sector";

@@ -11,10 +11,10 @@
 
 namespace gridmorph::test {
 
-/// Path of a mesh: one of the project (examples/meshes), a stand-in made when the tests are built ("water_turbine.cgns",
-/// "slotted_airfoil.cgns", "heated_coil.cgns"), or one that may not be passed on and has a stand-in. The last are looked for in the folder
-/// that the environment variable GRIDMORPH_MESHES names, else in the one the build was configured with; "" where they are not. Throws
-/// std::runtime_error when another one is missing.
+/// Path of a mesh: one of the project (examples/meshes), a stand-in made when the tests are built
+/// ("water_turbine.cgns", "slotted_airfoil.cgns", "heated_coil.cgns"), or one that may not be passed on and has a
+/// stand-in. The last are looked for in the folder that the environment variable GRIDMORPH_MESHES names, else in the
+/// one the build was configured with; "" where they are not. Throws std::runtime_error when another one is missing.
 inline std::string shared_mesh(std::string const& file) {
   char const* other = std::getenv("GRIDMORPH_MESHES");
   for (std::string const folder : {GRIDMORPH_PROJECT_MESHES, GRIDMORPH_MADE_MESHES,

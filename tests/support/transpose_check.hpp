@@ -55,8 +55,8 @@ struct LinearisedMorph {
   }
 };
 
-/// Bits by which gradients differ where another displacement has gone through the Morpher since it was made; 0: a transpose runs all that
-/// it is linearised at itself.
+/// Bits by which gradients differ where another displacement has gone through the Morpher since it was made; 0: a
+/// transpose runs all that it is linearised at itself.
 template <class Exec>
 Index bits_left_by_others(LinearisedMorph<Exec> const& at) {
   Coordinates const g = random_vectors(8, at.n_nodes), fresh = at.backwards(g);
@@ -67,8 +67,8 @@ Index bits_left_by_others(LinearisedMorph<Exec> const& at) {
   return different_bits(at.backwards(g), fresh);
 }
 
-/// Largest of |g . Jr - J^T g . r| over the sum of the sizes of both products' terms, for random g and r. Terms, not sums: those of a random g
-/// cancel.
+/// Largest of |g . Jr - J^T g . r| over the sum of the sizes of both products' terms, for random g and r. Terms, not
+/// sums: those of a random g cancel.
 template <class Exec>
 double product_error(LinearisedMorph<Exec> const& at, unsigned n_seeds = 2) {
   double worst = 0;

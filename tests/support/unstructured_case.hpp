@@ -86,8 +86,8 @@ Coordinates positions_on(Exec const& exec, UnstructuredCase const& c, Motion con
   return x;
 }
 
-/// How the velocities of a plan differ from centred differences of its displacements, at most; boundary(t): displacements of its
-/// known nodes at time t. The time is 0.
+/// How the velocities of a plan differ from centred differences of its displacements, at most; boundary(t):
+/// displacements of its known nodes at time t. The time is 0.
 struct RateError {
   double error = 0, largest = 0;  ///< largest difference, largest velocity
 };

@@ -1,4 +1,5 @@
-// What people meet on the first day: messages that say what was meant, and suggested cases on meshes whose boundaries say little.
+// What people meet on the first day: messages that say what was meant, and suggested cases on meshes whose boundaries
+// say little.
 #include "run_command.hpp"
 #include "support/mesh_builders.hpp"
 
@@ -120,7 +121,8 @@ TEST_F(FirstDay, CommandLinesThatAreAlmostRightSayWhatWasMeant) {
   EXPECT_EQ(gridmorph("morph rotation.toml --fraction 0.5 --dry-run").status, 0);
 }
 
-/// A row of blades between two circles, in a plane: rotor and stator apart, with a mixing plane between them that no type names.
+/// A row of blades between two circles, in a plane: rotor and stator apart, with a mixing plane between them that no
+/// type names.
 Mesh radial_stage() {
   constexpr int n_theta = 12, n_r = 12;
   double const pitch = 2 * 3.14159265358979323846 / 12;
@@ -322,8 +324,8 @@ TEST_F(FirstDay, RetryTriesNearFieldsWhereTheCaseFileHasNoTable) {
         << mode << tried;
 }
 
-// End walls resolved to a millionth of the span, in single precision: what a mesh generator writes, and the suggested case file with a
-// table of displacements.
+// End walls resolved to a millionth of the span, in single precision: what a mesh generator writes, and the suggested
+// case file with a table of displacements.
 TEST_F(FirstDay, APassageWithResolvedEndWallsInSinglePrecisionMorphsByTheSuggestedCase) {
   for (char const* motion : {"rotation", "chord"}) {
     std::string const folder = motion;

@@ -1,4 +1,5 @@
-// No output of any command takes the place of a file that was read, whichever of the formats it has and whichever of several files it is.
+// No output of any command takes the place of a file that was read, whichever of the formats it has and whichever of
+// several files it is.
 #include "run_command.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,8 @@ std::string const vtu_cube =
     "<DataArray type=\"UInt8\" Name=\"types\" "
     "format=\"ascii\">12</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n";
 
-/// A mesh of one cube in a format, with all files that it consists of; the first of `files` but for OpenFOAM is what the case file names.
+/// A mesh of one cube in a format, with all files that it consists of; the first of `files` but for OpenFOAM is what
+/// the case file names.
 struct CubeFormat {
   std::string name, input, ending;
   std::vector<std::string> files;

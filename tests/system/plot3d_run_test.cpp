@@ -1,4 +1,5 @@
-// PLOT3D meshes on the command line: inspect finds what the file does not say, and morph moves them as it moves CGNS meshes.
+// PLOT3D meshes on the command line: inspect finds what the file does not say, and morph moves them as it moves CGNS
+// meshes.
 #include "run_command.hpp"
 #include "support/plot3d_file.hpp"
 #include "support/temporary_folder.hpp"
@@ -61,7 +62,8 @@ TEST_F(Plot3dRun, MovesToTheBitAsTheCgnsMeshDoes) {
   }
 }
 
-/// A grid file has no place for fields, so that stages are CGNS files with the patches and interfaces that the side file gives.
+/// A grid file has no place for fields, so that stages are CGNS files with the patches and interfaces that the side
+/// file gives.
 TEST_F(Plot3dRun, StagesAreCgnsFiles) {
   write_plot3d({});
   ASSERT_EQ(gridmorph("inspect passage.p3d --write-side-file found.toml").status, 0);

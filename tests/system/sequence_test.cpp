@@ -68,7 +68,8 @@ TEST_F(SequenceRun, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
 }
 
 TEST_F(SequenceRun, ManyStepsDriftByNothing) {
-  // Periods of four steps: each of the four times comes round in all of them, and a quarter of a period is no motion at all.
+  // Periods of four steps: each of the four times comes round in all of them, and a quarter of a period is no motion at
+  // all.
   int const periods = test::reduced() ? 3 : 10;
   write_sequence(fmt::format("steps = {}\nperiods = {}\noutput = \"out_{{step}}.cgns\"\n", 4 * periods, periods),
                  ", amplitude = 0.4");

@@ -1,4 +1,5 @@
-// The case file that `inspect` suggests runs as it is, from any folder, moves nothing, and runs again with one motion in it.
+// The case file that `inspect` suggests runs as it is, from any folder, moves nothing, and runs again with one motion
+// in it.
 #include "run_command.hpp"
 #include "support/made_bodies.hpp"
 #include "support/mesh_builders.hpp"
@@ -85,8 +86,8 @@ TEST_F(Suggestions, RunOnSectorsAboutAnyAxis) {
   expect_runs("wedge", test::annulus_sector(sector, 1), along);
 }
 
-/// Blade, tip and what is cut into it are one body, and over the tip there is no near field: with a motion in the suggested case the blade grows
-/// until the gap over it is half as high, and untwists, and no cell turns inside out.
+/// Blade, tip and what is cut into it are one body, and over the tip there is no near field: with a motion in the
+/// suggested case the blade grows until the gap over it is half as high, and untwists, and no cell turns inside out.
 TEST_F(Suggestions, OnPassagesWithATipGapTakeAMotionThatClosesTheGapByHalf) {
   for (BladeTip const tip : {BladeTip::flat, BladeTip::squealer, BladeTip::groove}) {
     std::string const kind(name(tip));

@@ -180,7 +180,8 @@ TEST_F(UnstructuredSequence, AStepThatInvertsOrASeriesInOneFileLeavesNothing) {
   expect_bad_input(gridmorph("morph case.toml"), {"one file per step", "step_{step}.su2"});
 }
 
-/// The same ring, its body turned, with nodes that turn with its wall less and less: a body that turns as a whole needs no steps.
+/// The same ring, its body turned, with nodes that turn with its wall less and less: a body that turns as a whole needs
+/// no steps.
 class UnstructuredTurn : public UnstructuredSequence {
  protected:
   [[nodiscard]] Outcome turn(double degrees, int steps) const {

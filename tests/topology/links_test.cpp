@@ -90,7 +90,8 @@ TEST(Links, PeriodicRotationIsFittedToTheNodesNotTakenFromTheFile) {
   EXPECT_NEAR(std::abs(std::remainder(c2.z - c.z, 8 * std::atan(1.0))), 8 * std::atan(1.0) / 7, 1e-13);
 }
 
-/// A sector of one cell across, its sides in two zones: one high, one of a thin strip, with what single precision makes of nodes.
+/// A sector of one cell across, its sides in two zones: one high, one of a thin strip, with what single precision makes
+/// of nodes.
 Mesh sector_with_a_strip(double pitch, double pitch_of_the_strip, double height, double noise) {
   Random random(5);
   MeshBuilder build("strip");

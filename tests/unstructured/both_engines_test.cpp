@@ -1,5 +1,5 @@
-// Structured meshes from outside, through both engines: as blocks, and as hexahedra. The boundary must move alike; the volume
-// is carried in different ways, and neither may turn a cell over.
+// Structured meshes from outside, through both engines: as blocks, and as hexahedra. The boundary must move alike; the
+// volume is carried in different ways, and neither may turn a cell over.
 #include "support/morph_run.hpp"
 #include "support/unstructured_case.hpp"
 
@@ -73,7 +73,8 @@ TEST_P(BothEngines, MoveTheBoundaryAlikeAndTurnNothingOver) {
   }
 }
 
-// Its tip and trailing edge are thin, and the faces there turn differently: 0.055 once, columns went all the way with the mean of their turns.
+// Its tip and trailing edge are thin, and the faces there turn differently: 0.055 once, columns went all the way with
+// the mean of their turns.
 TEST(Elements, OfAWingThatBendsKeepTheirShapeAsWithoutRotations) {
   CaseFile const file = read_case_file(GRIDMORPH_EXAMPLES "/wing_38_blocks.toml");
   UnstructuredCase const wing(as_hexahedra(read_mesh(shared_mesh("mdo_tutorial_000_vol.cgns"))));

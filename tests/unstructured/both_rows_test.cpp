@@ -1,4 +1,5 @@
-// Blade rows as blocks and as hexahedra: rules about sections find the same blades in both, and give the same displacements.
+// Blade rows as blocks and as hexahedra: rules about sections find the same blades in both, and give the same
+// displacements.
 #include "support/cascade.hpp"
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
@@ -111,7 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
         Named{"passage_sections", 0.5, [] { return passage(true); }}),
     [](auto const& info) { return info.param.name; });
 
-/// Displacements that each rule of the motion gives to the nodes of its patches and periodic connections, as numbers of nodes.
+/// Displacements that each rule of the motion gives to the nodes of its patches and periodic connections, as numbers of
+/// nodes.
 std::vector<std::map<Index, Vec3>> displacements(Boundary const& boundary, BoundaryMotion const& motion,
                                                  std::size_t n_rules) {
   ResolvedMotion const& resolved = motion.motion();
@@ -272,8 +274,8 @@ TEST(BothRows, TurnAsAWholeWithTheirBlade) {
   }
 }
 
-/// A mesh of hexahedra with all its zones in one, coincident nodes one node, the patches of a family one patch: as programs for
-/// unstructured meshes store what was made of blocks. `number`: per node of the mesh its node there.
+/// A mesh of hexahedra with all its zones in one, coincident nodes one node, the patches of a family one patch: as
+/// programs for unstructured meshes store what was made of blocks. `number`: per node of the mesh its node there.
 Mesh in_one_zone(Mesh const& mesh, std::vector<Index32>& number) {
   Mesh out;
   out.source = mesh.source + " in one zone";

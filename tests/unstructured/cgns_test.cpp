@@ -389,8 +389,8 @@ TEST(UnstructuredBoundary, ANodeListTakesTheFacesOfTheSectionOfItsName) {
   EXPECT_TRUE(mesh.patches[0].nodes.empty());
 }
 
-/// As meshers write them: the family, the condition on nodes and the section have one name; nodes on the edge between two conditions
-/// are listed by one of them only.
+/// As meshers write them: the family, the condition on nodes and the section have one name; nodes on the edge between
+/// two conditions are listed by one of them only.
 TEST(UnstructuredBoundary, AConditionOnNodesItsFamilyAndItsSectionOfOneNameAreOnePatch) {
   TemporaryFolder const folder;
   for (auto const& nodes : {std::vector<cgsize_t>{1, 3, 4, 6, 7, 9, 10, 12}, std::vector<cgsize_t>{1, 3, 4, 6, 7, 9}}) {

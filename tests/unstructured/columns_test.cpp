@@ -1,4 +1,5 @@
-// Columns through boxes, where it is known which nodes stand on which: all elements, sides of the box, extents and positions.
+// Columns through boxes, where it is known which nodes stand on which: all elements, sides of the box, extents and
+// positions.
 #include "support/made_bodies.hpp"
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
@@ -48,7 +49,8 @@ struct Standing {
   [[nodiscard]] Index32 at(Vec3 const& p) const { return Index32(std::find(ijk.begin(), ijk.end(), p) - ijk.begin()); }
 };
 
-/// The columns hold exactly the nodes of levels 1 ... n(i, j) above the wall, each with its root and the length of its way.
+/// The columns hold exactly the nodes of levels 1 ... n(i, j) above the wall, each with its root and the length of its
+/// way.
 template <class Levels>
 void expect_columns(Standing const& s, Levels const& levels) {
   Columns const c = s.columns();

@@ -206,7 +206,8 @@ TEST(CommonMotion, IsThatOfColumnsOnWallsThatSlideToo) {
 }
 
 TEST(CommonMotion, IsTakenOffWhereWallsMoveBesideIt) {
-  // Turned as a whole, and the body by a little besides: as the little turn alone, seen from the frame that turns, but for what is small of second order.
+  // Turned as a whole, and the body by a little besides: as the little turn alone, seen from the frame that turns, but
+  // for what is small of second order.
   Case const c(box_around({7, 7, 7}, in_the_middle));
   RigidTransform const whole = rotation_about({4, 4, 4}, {1, 2, 3}, 1.3),
                        little = rotation_about({3.5, 3.6, 3.2}, {0, 1, 1}, 0.01);

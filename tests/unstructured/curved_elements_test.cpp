@@ -1,5 +1,5 @@
-// Elements of second order: their Jacobian against maps whose derivative is known, its sign against dense samples, and meshes of them
-// morphed: nodes amid edges on walls, on surfaces they slide on, and inside.
+// Elements of second order: their Jacobian against maps whose derivative is known, its sign against dense samples, and
+// meshes of them morphed: nodes amid edges on walls, on surfaces they slide on, and inside.
 #include "support/made_bodies.hpp"
 #include "support/random.hpp"
 #include "support/unstructured_case.hpp"
@@ -177,8 +177,8 @@ TEST(CurvedElements, SignAgreesWithDenseSamples) {
 }
 
 TEST(CurvedElements, VolumeIsThatOfTheMap) {
-  // A quarter of a ring as one hexahedron: x = r cos, y = r sin by quadratics of the angle is no circle, but its volume is known: half of the cross
-  // products summed around, exact for parabolas.
+  // A quarter of a ring as one hexahedron: x = r cos, y = r sin by quadratics of the angle is no circle, but its volume
+  // is known: half of the cross products summed around, exact for parabolas.
   CurvedElement const c =
       element(ElementType::hexahedron, reference_corners(ElementType::hexahedron), [](Vec3 const& p) {
         double const angle = p.y * std::numbers::pi / 2, r = 1 + p.x;

@@ -112,7 +112,8 @@ TEST(Domain, IsTheSameInAnotherUnitAndWithRoundOff) {
   }
 }
 
-// Means of ends that differ by round-off alone may be equal: knots that took them were filled again and again, without end.
+// Means of ends that differ by round-off alone may be equal: knots that took them were filled again and again, without
+// end.
 TEST(Domain, OfAFoldedMeshIsFoundInTheEnd) {
   constexpr double ulp = 0x1p-52;
   for (unsigned seed = 1; seed <= 12; ++seed) {

@@ -139,7 +139,8 @@ TEST(ElementQuality, APrismIsAHexahedronWithOneCollapsedSideInVolumeAndAspectRat
 }
 
 TEST(ElementQuality, SkewTetrahedronHasTheScaledJacobianOfItsWorstCorner) {
-  // Corner at the origin with edges 1, 1, h along the axes: J = h; the longest product of edges is that of a base corner.
+  // Corner at the origin with edges 1, 1, h along the axes: J = h; the longest product of edges is that of a base
+  // corner.
   for (double const h : {0.01, 0.1, 0.5}) {
     auto const c = corners({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, h}});
     double const product = 1 * std::sqrt(2.0) * std::sqrt(1 + h * h);

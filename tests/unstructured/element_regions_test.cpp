@@ -1,4 +1,5 @@
-// Regions inside meshes of elements: what rules name by zones, subsets and places moves as they say, nothing else is held.
+// Regions inside meshes of elements: what rules name by zones, subsets and places moves as they say, nothing else is
+// held.
 #include "support/expect_error.hpp"
 #include "support/made_bodies.hpp"
 #include "support/unstructured_case.hpp"
@@ -17,7 +18,8 @@ namespace {
 
 bool amid(Vec3 const& p) { return std::abs(p.x - 5) < 1 && std::abs(p.y - 5) < 1; }
 
-/// A bar in a box; the two rings of elements around the bar are the subset "rotor", faces above them at x = 2 the subset "cut".
+/// A bar in a box; the two rings of elements around the bar are the subset "rotor", faces above them at x = 2 the
+/// subset "cut".
 UnstructuredCase made(bool tetrahedra) {
   Mesh mesh = box_around({10, 10, 4}, amid, tetrahedra);
   Subset rotor{"rotor", {}}, cut{"cut", {}};

@@ -1,5 +1,5 @@
-// Smoothing where elements came out bad: what it repairs, what it must leave alone, and that it counts right although it
-// measures only around the nodes that it moves.
+// Smoothing where elements came out bad: what it repairs, what it must leave alone, and that it counts right although
+// it measures only around the nodes that it moves.
 #include "support/made_bodies.hpp"
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"

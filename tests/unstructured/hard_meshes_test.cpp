@@ -1,5 +1,5 @@
-// Meshes of kinds that users bring: viscous bodies, half models, bodies near or on other boundaries, several bodies and zones,
-// wing sections, elements of second order, polyhedra.
+// Meshes of kinds that users bring: viscous bodies, half models, bodies near or on other boundaries, several bodies and
+// zones, wing sections, elements of second order, polyhedra.
 #include "support/made_bodies.hpp"
 #include "support/reduced.hpp"
 #include "support/unstructured_case.hpp"
@@ -33,7 +33,8 @@ void expect_sound(Case const& c, UnstructuredMorphed const& m) {
   EXPECT_EQ(c.largest_miss(m), 0);
 }
 
-// ---- a viscous sphere --------------------------------------------------------------------------------------------------
+// ---- a viscous sphere
+// --------------------------------------------------------------------------------------------------
 
 struct Outer {
   char const* name;
@@ -98,7 +99,8 @@ TEST(SmallBodies, MoveByFourDiametersInABigBox) {
   expect_sound(c, m);
 }
 
-// ---- symmetry planes ---------------------------------------------------------------------------------------------------
+// ---- symmetry planes
+// ---------------------------------------------------------------------------------------------------
 
 TEST(HalfModels, NodesOfTheSymmetryPlaneStayInItWhileABodyOnItMoves) {
   SphereOptions o;
@@ -125,7 +127,8 @@ TEST(HalfModels, NodesOfTheSymmetryPlaneStayInItWhileABodyOnItMoves) {
   }
 }
 
-// ---- boxes in boxes ----------------------------------------------------------------------------------------------------
+// ---- boxes in boxes
+// ----------------------------------------------------------------------------------------------------
 
 class Boxes : public testing::TestWithParam<bool> {
  protected:
@@ -180,7 +183,8 @@ TEST_P(Boxes, BodiesMoveApartTogetherAndPastEachOther) {
   }
 }
 
-// ---- 2-D ---------------------------------------------------------------------------------------------------------------
+// ---- 2-D
+// ---------------------------------------------------------------------------------------------------------------
 
 TEST(WingSections, PitchAndPlungeInAFarField) {
   Case const c(airfoil(160, 25, 1e-5, 1.25, 20));
@@ -196,7 +200,8 @@ TEST(WingSections, PitchAndPlungeInAFarField) {
   }
 }
 
-// ---- the same mesh in other forms --------------------------------------------------------------------------------------
+// ---- the same mesh in other forms
+// --------------------------------------------------------------------------------------
 
 class SameMesh : public testing::Test {
  protected:

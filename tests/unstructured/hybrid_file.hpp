@@ -15,11 +15,12 @@
 
 namespace gridmorph::test {
 
-/// Puts zones together. Connections between a block and elements become GridConnectivity_t with lists of nodes on both sides.
+/// Puts zones together. Connections between a block and elements become GridConnectivity_t with lists of nodes on both
+/// sides.
 class HybridFile {
  public:
-  /// blocks, elements: the same zones; as_elements: names of those that are taken from `elements`. one_to_one: interfaces of blocks
-  /// with elements stay GridConnectivity1to1_t, whose donor range means nothing there.
+  /// blocks, elements: the same zones; as_elements: names of those that are taken from `elements`. one_to_one:
+  /// interfaces of blocks with elements stay GridConnectivity1to1_t, whose donor range means nothing there.
   HybridFile(std::string const& path, Mesh const& blocks, Mesh const& elements, std::set<std::string> as_elements,
              FileFormat format = FileFormat::cgns_hdf5, bool one_to_one = false)
       : blocks_(blocks), elements_(elements), as_elements_(std::move(as_elements)), one_to_one_(one_to_one) {

@@ -334,7 +334,8 @@ TEST(Hybrid, InterfacesOfABlockWithElementsAreMatchedByPosition) {
   expect_same_mesh(read_mesh(path), expected);
 }
 
-/// A block of 4 x 3 nodes beside a triangle and a quadrilateral, each zone with its side of the connection between them.
+/// A block of 4 x 3 nodes beside a triangle and a quadrilateral, each zone with its side of the connection between
+/// them.
 void write_flat(std::string const& path, bool three_indices, bool turned) {
   cgns::File file(path, cgns::File::Mode::create);
   float const version = 4.0F;

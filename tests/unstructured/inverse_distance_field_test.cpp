@@ -1,4 +1,5 @@
-// The smooth field between boundary values: the sum over all of them, constants, and the same field however they are numbered.
+// The smooth field between boundary values: the sum over all of them, constants, and the same field however they are
+// numbered.
 #include "support/random.hpp"
 
 #include <gridmorph/morph/stages/smooth_field.hpp>
@@ -80,15 +81,16 @@ std::vector<int> in_order(std::size_t n) {
   return order;
 }
 
-/// Against the sum over all sources. A group of radius r that counts as one at distance d has r <= d / 2. Its weight w' = A / d^p
-/// stands for weights w = A_n / |x - x_n|^p with (1/2)^p <= w' / w <= (3/2)^p, and the mean v' of the whole obeys sum w' (v - v') = 0, so
+/// Against the sum over all sources. A group of radius r that counts as one at distance d has r <= d / 2. Its weight w'
+/// = A / d^p stands for weights w = A_n / |x - x_n|^p with (1/2)^p <= w' / w <= (3/2)^p, and the mean v' of the whole
+/// obeys sum w' (v - v') = 0, so
 ///
 ///     |sum w v / sum w - v'| = |sum (w - w') (v - v')| / sum w <= ((3/2)^p - 1) sum w |v - v'| / sum w
 ///
-/// at nodes of the lattice where even the smallest groups, whose nodes are never looked at one by one, are that far. `typical`: root
-/// mean square of the error over that of the mean deviation sum w |v - v'| / sum w. It is no small share of it: across a group at twice its
-/// radius weights change by 3^p, and its mean takes no notice. The field is meant to be smooth and between its values, not
-/// to be that sum.
+/// at nodes of the lattice where even the smallest groups, whose nodes are never looked at one by one, are that far.
+/// `typical`: root mean square of the error over that of the mean deviation sum w |v - v'| / sum w. It is no small
+/// share of it: across a group at twice its radius weights change by 3^p, and its mean takes no notice. The field is
+/// meant to be smooth and between its values, not to be that sum.
 void expect_direct_sum(Sources const& sources, int dimension, Function value, double spacing, double typical) {
   int const p = dimension == 2 ? 3 : 4;
   auto const planned =

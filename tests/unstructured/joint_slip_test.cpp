@@ -1,4 +1,5 @@
-// Nodes that several things hold at once: given displacements on slip surfaces, periodic images on surfaces, periodic sides that meet in their axis.
+// Nodes that several things hold at once: given displacements on slip surfaces, periodic images on surfaces, periodic
+// sides that meet in their axis.
 #include "support/made_bodies.hpp"
 #include "support/sector.hpp"
 #include "support/unstructured_case.hpp"
@@ -224,7 +225,8 @@ TEST(PeriodicAxis, IsNotHeldWhereARuleMovesItsNodes) {
   Case const c(s.mesh());
   Motion motion = motion_of({rule_for({"shroud", "inlet", "outlet", "type:periodic"}, translation({0.1, 0.2, 0.3}))});
   motion.axis = s.axis();
-  // All of the boundary goes along, and so does the mesh: but sides that turn into one another are no copies after that.
+  // All of the boundary goes along, and so does the mesh: but sides that turn into one another are no copies after
+  // that.
   EXPECT_THROW((void)c.morph(motion), MotionError);
   motion.rules[0].rule = translation(0.3 * s.axis().direction);
   auto const m = c.morph(motion, coarse());

@@ -147,8 +147,8 @@ NodeGraph line_of(int n) {
 }
 
 TEST(Layers, NodesThatLieNearerThanTheirWayWaitAndTheUnreachedHaveNoRow) {
-  // Along the line 0 1 2 3 4: node 2 is as near as if the seed were behind a wall beside it; 4 is not wanted, so 5 is not reached;
-  // 6 has no distance.
+  // Along the line 0 1 2 3 4: node 2 is as near as if the seed were behind a wall beside it; 4 is not wanted, so 5 is
+  // not reached; 6 has no distance.
   NodeGraph const graph = line_of(7);
   Coordinates x(7);
   for (Index n = 0; n < 7; ++n) x.set(n, {double(n), 0, 0});

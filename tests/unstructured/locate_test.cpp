@@ -1,5 +1,5 @@
-// Points in unstructured meshes: against brute force over all elements, at all kinds of places, in broken meshes, with any
-// number of threads.
+// Points in unstructured meshes: against brute force over all elements, at all kinds of places, in broken meshes, with
+// any number of threads.
 #include "support/random.hpp"
 #include "support/reduced.hpp"
 #include "support/unstructured_meshes.hpp"

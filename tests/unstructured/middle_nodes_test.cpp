@@ -1,5 +1,5 @@
-// The guard on elements of second order that are broken by the nodes between their corners alone: walls that curve within thin elements,
-// boundaries that nodes slide on, curved edges inside, and what must not happen.
+// The guard on elements of second order that are broken by the nodes between their corners alone: walls that curve
+// within thin elements, boundaries that nodes slide on, curved edges inside, and what must not happen.
 #include "support/made_bodies.hpp"
 #include "support/morph_run.hpp"
 #include "support/unstructured_case.hpp"

@@ -127,7 +127,8 @@ std::vector<std::vector<Index32>> inner_faces(Mesh const& mesh, Accept const& ac
   return out;
 }
 
-/// `mesh` with a wall of these faces inside of it: one patch, or one for each side; every other face listed the other way round if `mixed`.
+/// `mesh` with a wall of these faces inside of it: one patch, or one for each side; every other face listed the other
+/// way round if `mixed`.
 Mesh with_plate(Mesh mesh, std::vector<std::vector<Index32>> const& faces, bool two_patches, bool mixed) {
   for (int side = 0; side < (two_patches ? 2 : 1); ++side) {
     Patch plate;
@@ -537,8 +538,8 @@ TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
 }
 
 TEST(UnstructuredMorph, StructuredMeshesMoveAlikeByBothWays) {
-  // The floor of a box bulges: through blocks and through elements. The boundary goes the same way; between floor and lid both
-  // fall off, along grid lines and by distance.
+  // The floor of a box bulges: through blocks and through elements. The boundary goes the same way; between floor and
+  // lid both fall off, along grid lines and by distance.
   constexpr int n = 12;
   Motion motion;
   motion.rules.push_back({{"k_min"},

@@ -1,5 +1,5 @@
-// Lists around nodes and across sides against plain maps, on meshes whose numbers are shuffled: their entries go through
-// several buckets and, with several threads, several chunks.
+// Lists around nodes and across sides against plain maps, on meshes whose numbers are shuffled: their entries go
+// through several buckets and, with several threads, several chunks.
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 

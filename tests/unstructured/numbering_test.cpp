@@ -1,4 +1,5 @@
-// What does not depend on how nodes and elements are numbered: displacements of meshes that were numbered anew at random.
+// What does not depend on how nodes and elements are numbered: displacements of meshes that were numbered anew at
+// random.
 #include "io/io_support.hpp"
 #include "support/made_bodies.hpp"
 #include "support/random.hpp"

@@ -1,4 +1,5 @@
-// Files that list a periodic boundary twice, as a patch and as a connection: the patch does not hold what the connection lets go.
+// Files that list a periodic boundary twice, as a patch and as a connection: the patch does not hold what the
+// connection lets go.
 #include "support/morph_run.hpp"
 #include "support/sector.hpp"
 #include "support/unstructured_case.hpp"

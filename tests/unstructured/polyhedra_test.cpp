@@ -239,8 +239,8 @@ TEST(Polyhedra, AreWrittenAsTheStandardHasThem) {
   EXPECT_EQ(first[0], 1);
   EXPECT_EQ(first[1], last[0] + 1);
   EXPECT_EQ(last[1] - last[0], mesh.n_elements());
-  // Each face bounds one element, outwards, or two, and the second one sees it from outside as inwards. Around each element faces close:
-  // every edge is passed once each way.
+  // Each face bounds one element, outwards, or two, and the second one sees it from outside as inwards. Around each
+  // element faces close: every edge is passed once each way.
   std::map<cgsize_t, std::vector<int>> signs;
   for (auto const& element : lists[1]) {
     std::map<std::pair<cgsize_t, cgsize_t>, int> edges;

@@ -1,5 +1,5 @@
-// Polyhedra measured: one by one against known solids, as meshes against the same elements by their types, and faces against what
-// is known of sheared and stepped boxes. The guard on them.
+// Polyhedra measured: one by one against known solids, as meshes against the same elements by their types, and faces
+// against what is known of sheared and stepped boxes. The guard on them.
 #include "quality/test_meshes.hpp"
 #include "support/made_bodies.hpp"
 #include "support/unstructured_meshes.hpp"
@@ -228,7 +228,8 @@ TEST(PolyhedronQuality, ConcaveElementsBesidePolyhedraAreWhatTheirPyramidsAre) {
   auto const dented = [&](Mesh const& mesh, double by) {
     return moved_by(mesh, [&](Vec3 const& p) { return distance(p, corner) < 1e-12 ? p + by * inwards : p; });
   };
-  // Three faces of a unit cube stop to be convex there at a third of the diagonal; the pyramids lose their volume beyond the opposite corner.
+  // Three faces of a unit cube stop to be convex there at a third of the diagonal; the pyramids lose their volume
+  // beyond the opposite corner.
   struct {
     double by;
     Index of_types, of_faces;
@@ -266,7 +267,8 @@ TEST(FaceQuality, OfAShearedBoxIsItsShear) {
   double const shear = std::atan(0.5) * 180 / std::numbers::pi;
   EXPECT_NEAR(r[Measure::non_orthogonality_deg].min, shear, 1e-10);
   EXPECT_NEAR(r[Measure::non_orthogonality_deg].max, shear, 1e-10);
-  // On the boundary the line goes straight: it misses the middle of the face by half a step of the shear, 0.25, where the face reaches 0.5.
+  // On the boundary the line goes straight: it misses the middle of the face by half a step of the shear, 0.25, where
+  // the face reaches 0.5.
   EXPECT_NEAR(r[Measure::face_skewness].max, 0.5, 1e-10);
   EXPECT_NEAR(r[Measure::face_skewness].min, 0, 1e-10);
 }

@@ -112,8 +112,8 @@ TEST(RealUnstructured, TurbineCascadeIsReadWholeWithItsPeriodicPoints) {
   auto const topology = make_topology(mesh);
   auto const face_patches = find_face_patches(mesh, topology);
   EXPECT_TRUE(face_patches.problems.empty());
-  // A layer of elements beyond periodic_2 repeats those inside periodic_1: that marker lies inside the mesh, and the edges
-  // around the layer belong to the connection.
+  // A layer of elements beyond periodic_2 repeats those inside periodic_1: that marker lies inside the mesh, and the
+  // edges around the layer belong to the connection.
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
     EXPECT_EQ(face_patches.faces_of_patch[p], mesh.patches[p].name == "periodic_2" ? 0 : mesh.patches[p].faces.size())
         << mesh.patches[p].name;

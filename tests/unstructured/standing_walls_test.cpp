@@ -18,8 +18,8 @@ using test::rule_for;
 using test::translation;
 using Case = test::UnstructuredCase;
 
-/// Pins of radius 0.25 side by side in a channel of height 1, from x = -0.5 on, each amid an O-mesh of quadrilaterals at the pin and
-/// triangles beyond. Patches "pin1", ..., "lower", "upper" (walls), "inlet", "outlet".
+/// Pins of radius 0.25 side by side in a channel of height 1, from x = -0.5 on, each amid an O-mesh of quadrilaterals
+/// at the pin and triangles beyond. Patches "pin1", ..., "lower", "upper" (walls), "inlet", "outlet".
 Mesh pins(int count) {
   constexpr int side = 8, around = 4 * side, layers = 9;
   std::vector<double> height{0};

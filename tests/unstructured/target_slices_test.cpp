@@ -107,8 +107,8 @@ Vec3 twisted(Vec3 const& x) {
   return {x0 + c * (x.x - x0) - s * x.y, s * (x.x - x0) + c * x.y, x.z};
 }
 
-/// The wing's surface as triangles whose nodes stand in no rows: inner nodes are off them at random by `scatter` cells, each quadrilateral is cut along
-/// its shorter diagonal, and a layer of prisms stands on it.
+/// The wing's surface as triangles whose nodes stand in no rows: inner nodes are off them at random by `scatter` cells,
+/// each quadrilateral is cut along its shorter diagonal, and a layer of prisms stands on it.
 Mesh scattered_wing(int ni, int nj, double scatter) {
   Random random(7);
   Mesh mesh;

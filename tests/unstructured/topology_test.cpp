@@ -37,7 +37,8 @@ TEST(UnstructuredTopology, NeighboursOfHexahedraAreThoseOfTheCells) {
   EXPECT_EQ(topology.crowded_sides, 0);
 }
 
-/// Every inner side is seen from both elements, and the area vectors of the boundary add up to zero and its flux to the volume.
+/// Every inner side is seen from both elements, and the area vectors of the boundary add up to zero and its flux to the
+/// volume.
 void expect_closed(Mesh const& mesh, double volume) {
   auto const topology = make_topology(mesh);
   std::map<std::pair<Index32, Index32>, int> seen;
@@ -159,8 +160,8 @@ TEST(UnstructuredTopology, ElementsThatOverlapAreSaid) {
 }
 
 TEST(UnstructuredTopology, CollapsedElementsMeetTheirNeighboursWhereTheyHaveFaces) {
-  // A prism over the triangle of nodes 1, 2, 4 of a unit square, written as a hexahedron that names two nodes twice, beside
-  // the prism of the other half.
+  // A prism over the triangle of nodes 1, 2, 4 of a unit square, written as a hexahedron that names two nodes twice,
+  // beside the prism of the other half.
   Mesh mesh;
   mesh.add_zone("halves", 8);
   mesh.coordinates = Coordinates(8);

@@ -15,8 +15,8 @@ namespace {
 using namespace test;
 using Case = UnstructuredCase;
 
-/// A box around a body in two zones that touch at x = 8; no connection, but a patch on either side: "left", "right". The right zone's
-/// nodes there are off by `gap`.
+/// A box around a body in two zones that touch at x = 8; no connection, but a patch on either side: "left", "right".
+/// The right zone's nodes there are off by `gap`.
 struct TwoZones {
   Mesh mesh;
   std::vector<std::pair<Index32, Index32>> pairs;

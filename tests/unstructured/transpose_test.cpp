@@ -232,8 +232,8 @@ TEST_P(UnstructuredTranspose, HasTheProductsOfTheDerivativeForwards) {
 TEST_P(UnstructuredTranspose, IsTheDerivativeOfAFunctional) {
   Planned const& planned = this->planned();
   LinearisedMorph<Exec> const at = planned.at<Exec>(1);
-  // J = sum of w . u + |u|^2 / 2 along a direction of the boundary, by centred differences. Nodes of other boundaries stay: off a
-  // surface that nodes slide on, what they ask for is trimmed beyond a tolerance.
+  // J = sum of w . u + |u|^2 / 2 along a direction of the boundary, by centred differences. Nodes of other boundaries
+  // stay: off a surface that nodes slide on, what they ask for is trimmed beyond a tolerance.
   Vec3 const w{1, -2, 0.5};
   Coordinates rate = random_vectors(5, at.boundary.size());
   auto const& plan = planned.prepared.plan;

@@ -28,7 +28,8 @@ namespace {
 using Case = UnstructuredCase;
 constexpr double degrees = std::numbers::pi / 180;
 
-// ---- the rotation of a cloud of points -----------------------------------------------------------------------------------
+// ---- the rotation of a cloud of points
+// -----------------------------------------------------------------------------------
 
 struct Cloud {
   std::vector<Vec3> arms;
@@ -93,7 +94,8 @@ TEST(BestTurn, HasTheRateOfItsDifferences) {
   }
 }
 
-// ---- how it fades --------------------------------------------------------------------------------------------------------
+// ---- how it fades
+// --------------------------------------------------------------------------------------------------------
 
 TEST(TurnShare, FallsFromTheBodyToTheOthersAndHasNoJumps) {
   for (double const way : {1e-3, 0.1, 3.0, 400.0})
@@ -257,7 +259,8 @@ TEST(FacetDistance, IsThatOfTheNearestFaceHoweverTheyAreListed) {
   }
 }
 
-// ---- morphs --------------------------------------------------------------------------------------------------------------
+// ---- morphs
+// --------------------------------------------------------------------------------------------------------------
 
 Case c_mesh(int fineness = 1) {
   AirfoilOptions options;

@@ -1,4 +1,5 @@
-// Nearest sources against the plain sweeps that they are defined by, one node after another, all looking at what was known before the sweep.
+// Nearest sources against the plain sweeps that they are defined by, one node after another, all looking at what was
+// known before the sweep.
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 

@@ -17,8 +17,8 @@ using kernels::FacetFoot;
 SlipRule on(SlipRule::Surface surface) { return {.surface = surface}; }
 
 /// What nodes on slip patches do in two runs of the same mesh: largest difference of their displacements, and largest
-/// distance from the surfaces of the one and of the other; for the latter those that have left the baseline surface over a
-/// rim count apart.
+/// distance from the surfaces of the one and of the other; for the latter those that have left the baseline surface
+/// over a rim count apart.
 struct Comparison {
   double apart = 0, off_own = 0, off_reference = 0, off_reference_beyond = 0, moved = 0;
 };
@@ -66,8 +66,8 @@ TEST(BaselineSlipOnRealMeshes, EndWallsOfATurbineStageAsFacetsAreSurfacesOfRevol
   EXPECT_LE(c.off_own, 1e-10 * own.plan().mesh_size);
   EXPECT_LE(c.off_reference, 2e-6);  // of radii near 1, cells of 0.01 to 0.03
   EXPECT_LE(c.apart, 2e-6);
-  // The feet of the blades are holes of the baseline end walls; a node that moves d into one is on the tangent plane of the
-  // hole's rim, d^2 / 2 r off.
+  // The feet of the blades are holes of the baseline end walls; a node that moves d into one is on the tangent plane of
+  // the hole's rim, d^2 / 2 r off.
   EXPECT_LE(c.off_reference_beyond, 0.02 * 0.02 / 2);
 
   Outcome const still = run(SlipRule::Surface::baseline, 0);

@@ -1,4 +1,5 @@
-// Wings whose tip has no face of its own: it is a point that a pole leaves from, or a line, beyond which the mesh meets itself.
+// Wings whose tip has no face of its own: it is a point that a pole leaves from, or a line, beyond which the mesh meets
+// itself.
 #include "support/mesh_builders.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
@@ -30,7 +31,8 @@ Vec3 between(Vec3 const& wall, Vec3 const& far, int j) {
   return wall + f * (far - wall);
 }
 
-/// Half an ellipsoid in half a ball, lines of longitude and latitude: those of longitude meet in the tip, and on the pole beyond it.
+/// Half an ellipsoid in half a ball, lines of longitude and latitude: those of longitude meet in the tip, and on the
+/// pole beyond it.
 Mesh pointed() {
   constexpr int along = 16;
   Bricks b;
@@ -50,8 +52,8 @@ Mesh pointed() {
   return make(b);
 }
 
-/// An ellipse for a section, thinner and thinner until its two sides meet in a line along the chord; the O-grid goes on beyond the tip round
-/// that line, on which it is joined to itself.
+/// An ellipse for a section, thinner and thinner until its two sides meet in a line along the chord; the O-grid goes on
+/// beyond the tip round that line, on which it is joined to itself.
 Mesh flat() {
   constexpr int to_tip = 12, beyond = 8;
   Index3 const n{around + 1, away + 1, to_tip + beyond + 1};

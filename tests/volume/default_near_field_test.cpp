@@ -110,7 +110,8 @@ TEST(DefaultNearField, TurnsRigidlyWithABodyInAnOGridOfOneBlock) {
 constexpr int nodes_around = 48, cells_away = 24;
 constexpr double half_chord = 0.5, half_thickness = 0.06;
 
-/// A wing with an elliptic section, lines along confocal hyperbolas: they leave the wall at right angles and end 15 chords away.
+/// A wing with an elliptic section, lines along confocal hyperbolas: they leave the wall at right angles and end 15
+/// chords away.
 Mesh elliptic_wing() {
   Bricks b;
   b.name = "wing";
@@ -130,7 +131,8 @@ Mesh elliptic_wing() {
   return make(b);
 }
 
-/// Sine of the smallest angle of a cell's corners in the section, negative where one is turned over, and the largest change of the angle between wall and line.
+/// Sine of the smallest angle of a cell's corners in the section, negative where one is turned over, and the largest
+/// change of the angle between wall and line.
 struct SectionShapes {
   double sine = 1, leaned = 0;
 };

@@ -1,4 +1,5 @@
-// Bodies that turn by about half a turn and are deformed besides, so that some of their nodes turn by less and some by more.
+// Bodies that turn by about half a turn and are deformed besides, so that some of their nodes turn by less and some by
+// more.
 #include "support/mesh_builders.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
@@ -25,8 +26,8 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 constexpr double least_shape = 0.25;  ///< scaled Jacobian
 constexpr int cells_of_edge = 12, cells_off_wing = 20;
 
-/// A tapered wing in a ball, six zones round it: the faces of a cube, blown up to confocal ellipsoids from the wing's on. mirror: 1, or -1 for its
-/// image in the plane x = 0.
+/// A tapered wing in a ball, six zones round it: the faces of a cube, blown up to confocal ellipsoids from the wing's
+/// on. mirror: 1, or -1 for its image in the plane x = 0.
 Mesh wing_in_ball(double mirror = 1) {
   constexpr std::array<double, 3> half_axis{0.5, 0.15, 1.5};
   MeshBuilder b("wing in a ball");

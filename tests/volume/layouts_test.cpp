@@ -69,7 +69,8 @@ struct GhostedZones {
   }
 };
 
-/// An annulus sector that slides, with periodic turns, corrections and slip surfaces, and what flat arrays of double give.
+/// An annulus sector that slides, with periodic turns, corrections and slip surfaces, and what flat arrays of double
+/// give.
 class Layouts : public ::testing::Test {
  protected:
   Outcome const run = [] {

@@ -47,7 +47,8 @@ TEST(Lines, OfNoLengthAreDividedByNodeCount) {
   }
 }
 
-/// Displacement along the lines of a straight box with even spacing whose one wall moves by one unit, 3 of 12 layers as one.
+/// Displacement along the lines of a straight box with even spacing whose one wall moves by one unit, 3 of 12 layers as
+/// one.
 std::vector<double> along_a_box(std::string const& wall, std::string const& opposite, VolumeOptions const& volume) {
   PlanOptions options;
   options.boundary_layers = {{{wall}, BoundaryLayer::Extent::layers, 3, 0, BoundaryLayer::Mode::translate}};

@@ -63,8 +63,8 @@ FarTurn far_turn(Plan const& plan) {
   throw std::logic_error("no chain takes the turn on");
 }
 
-// The body's centre moves on along a straight line and fades linearly, the turn about it like the logarithm; recomputed from the nodes
-// of each line.
+// The body's centre moves on along a straight line and fades linearly, the turn about it like the logarithm; recomputed
+// from the nodes of each line.
 TEST(TurnedNearField, HandsItsTurnOnAboutTheCentreOfTheBody) {
   int const layers = 2;
   Outcome const r = turned_o_grid(layers, Mode::rotate, 1.0);
@@ -124,7 +124,8 @@ double smallest_determinant(Mesh const& ring, double degrees, bool as_function) 
       .value;
 }
 
-// The shear of a turn that fades like the logarithm is the same everywhere: half a turn of a body leaves all cells sound.
+// The shear of a turn that fades like the logarithm is the same everywhere: half a turn of a body leaves all cells
+// sound.
 TEST(TurnedNearField, TurnsABodyByHalfATurn) {
   Mesh const ring = ellipse_in_circle();
   double before = smallest_determinant(ring, 0, false);

@@ -1,4 +1,5 @@
-// Running clearances under a casing that is of revolution nowhere, of passages, wheels and sequences, against the distance from its formula.
+// Running clearances under a casing that is of revolution nowhere, of passages, wheels and sequences, against the
+// distance from its formula.
 #include "support/contoured_wall.hpp"
 #include "support/expect_error.hpp"
 #include "wheel/wheel_run.hpp"

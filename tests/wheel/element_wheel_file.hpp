@@ -1,5 +1,5 @@
-// A wheel of elements as any other program reads it: nodes and connections with the mid-level library of CGNS. Its cells come from
-// read_mesh(), and whether it is closed is counted face by face.
+// A wheel of elements as any other program reads it: nodes and connections with the mid-level library of CGNS. Its
+// cells come from read_mesh(), and whether it is closed is counted face by face.
 #pragma once
 
 #include "wheel/wheel_file.hpp"
@@ -212,8 +212,8 @@ struct ElementWheelFile {
   }
 };
 
-/// Boundaries that rules give, in every passage, of the wheel of a mesh of blocks and of the same passage as hexahedra or what they
-/// are split into. `slipping`: families of the others, and `off_them`: without the nodes of those.
+/// Boundaries that rules give, in every passage, of the wheel of a mesh of blocks and of the same passage as hexahedra
+/// or what they are split into. `slipping`: families of the others, and `off_them`: without the nodes of those.
 inline void expect_same_boundaries(Mesh const& blocks, std::set<std::string> const& slipping,
                                    WheelFile const& of_blocks, ElementWheelFile const& of_elements,
                                    bool off_them = false) {

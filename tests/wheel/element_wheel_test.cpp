@@ -1,4 +1,5 @@
-// Wheels of passages of elements: the demo passage as hexahedra, against the wheel of its blocks, and as prisms and tetrahedra.
+// Wheels of passages of elements: the demo passage as hexahedra, against the wheel of its blocks, and as prisms and
+// tetrahedra.
 #include "support/cascade.hpp"
 #include "support/expect_error.hpp"
 #include "support/made_bodies.hpp"
@@ -96,7 +97,8 @@ TEST_F(ElementWheel, OfEqualBladesIsTheMorphedPassageTurned) {
   for (int p = 0; p < n_blades; ++p) EXPECT_LT(distance_from(wheel, p, n_blades, one), 1e-14 * size()) << p;
 }
 
-/// Blades, inlet, outlet and periodic sides of different blades: what the rules say of them is the same whatever the cells are.
+/// Blades, inlet, outlet and periodic sides of different blades: what the rules say of them is the same whatever the
+/// cells are.
 TEST_F(ElementWheel, MovesBoundariesAsTheWheelOfTheBlocks) {
   write_mesh(folder.file("blocks.cgns"), blocks);
   case_of("blocks", demo_rules);
@@ -142,7 +144,8 @@ TEST_F(ElementWheel, InPartStaysPeriodicByTheAngleOfThePart) {
   FaceCount const faces = part.count_faces();
   EXPECT_EQ(faces.open, 0);
   EXPECT_GT(faces.ends, 0);
-  // A part is a mesh like any other: it is looked at, measured and morphed as it is, and made into the whole wheel again.
+  // A part is a mesh like any other: it is looked at, measured and morphed as it is, and made into the whole wheel
+  // again.
   EXPECT_EQ(gridmorph("inspect wheel.cgns --json"), 0) << text("err");
   EXPECT_EQ(gridmorph("quality wheel.cgns"), 0) << text("err");
   std::filesystem::copy_file(folder / "wheel.cgns", folder / "part.cgns");
@@ -156,7 +159,8 @@ TEST_F(ElementWheel, InPartStaysPeriodicByTheAngleOfThePart) {
   EXPECT_GT(moved, again.n_nodes() / 4);
 }
 
-/// An H mesh of one zone, its blade on the periodic sides, as blocks, hexahedra, prisms and tetrahedra, or hexahedra and polyhedra.
+/// An H mesh of one zone, its blade on the periodic sides, as blocks, hexahedra, prisms and tetrahedra, or hexahedra
+/// and polyhedra.
 class CascadeWheel : public ElementWheel {
  protected:
   void SetUp() override {

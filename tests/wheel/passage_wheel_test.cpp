@@ -1,4 +1,5 @@
-// Wheels of the demo passage: its blade stands inside the passage, so that a periodic side lies halfway between two blades.
+// Wheels of the demo passage: its blade stands inside the passage, so that a periodic side lies halfway between two
+// blades.
 #include "support/expect_error.hpp"
 #include "support/scramble.hpp"
 #include "support/with_keys.hpp"
@@ -295,7 +296,8 @@ TEST_F(PassageWheel, InPartStaysPeriodicByTheAngleOfThePart) {
         worst = std::max(worst, distance(Turn(Axis{}, c.angle[0] > 0 ? 3 : -3, n_blades)(own.at(p)), donor.at(q)));
       });
   EXPECT_LT(worst, 2e-16);
-  // The whole wheel of the same blades, repeated, where the part does not end; 3 does not go into 8, so the ends differ.
+  // The whole wheel of the same blades, repeated, where the part does not end; 3 does not go into 8, so the ends
+  // differ.
   WheelFile const whole = wheel("passage.toml",
                                 "sequence = [\"A\", \"B\", \"B\", \"A\", \"B\", \"B\", \"A\", "
                                 "\"B\"]\n[[wheel.blade]]\nname = \"A\"\n[[wheel.blade]]\nname = \"B\"\nfactor = 0.2\n");

@@ -116,7 +116,8 @@ TEST_P(PlaneWheel, OfDifferentBladesHasOnEveryBladeItsOwnMotion) {
   EXPECT_LT(worst, 1e-13 * mesh.size());
 }
 
-/// Between two blades a node of inlet or exit takes its share of what the one and the other say, by its place between them.
+/// Between two blades a node of inlet or exit takes its share of what the one and the other say, by its place between
+/// them.
 TEST_P(PlaneWheel, SharesInletAndExitBetweenTheBladesBesideThem) {
   std::array<double, n_blades> const factor{1, 0, 0, 0, 0, 0, 0, 0, 0};
   ElementWheelFile const file = wheel(4, "factors = [1, 0, 0, 0, 0, 0, 0, 0, 0]\n");
@@ -140,7 +141,8 @@ TEST_P(PlaneWheel, SharesInletAndExitBetweenTheBladesBesideThem) {
   }
 }
 
-// Blocks of one cell across, in three dimensions with symmetry planes or of a 2-D base, make the wheel that plane elements make.
+// Blocks of one cell across, in three dimensions with symmetry planes or of a 2-D base, make the wheel that plane
+// elements make.
 TEST_P(PlaneWheel, OfBlocksOneCellThickHasTheSameBoundaries) {
   std::string const factors = "factors = [1, -0.5, 0, 0, 0.75, 1, 1, -1, 0.25]\n";
   ElementWheelFile const of_elements = wheel(4, factors);

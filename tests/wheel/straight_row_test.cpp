@@ -137,7 +137,8 @@ TEST_F(StraightRow, HasOnEveryBladeItsOwnMotion) {
   EXPECT_GT(apart, 1e-2 * size());
 }
 
-/// Blades that move along the pitch as a whole: between them every node moves by the share that its place along the pitch gives.
+/// Blades that move along the pitch as a whole: between them every node moves by the share that its place along the
+/// pitch gives.
 TEST_F(StraightRow, SharesLinearlyAlongThePitch) {
   folder.write("shift.toml", case_of("passage.cgns", "dx = \"0.04\"\ndz = \"0.1\"\n"));
   std::array<double, n_blades> const factor{1, 0, -0.5, 0.25, 1};

@@ -358,7 +358,8 @@ TEST_F(WaveWheel, EndWallsMoveAndBladesAreExtendedInEveryPassage) {
 }
 
 TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
-  // The blade ends on the case, a cylinder of radius 0.167: what it grows there is what it rubs; the mesh keeps it on the case.
+  // The blade ends on the case, a cylinder of radius 0.167: what it grows there is what it rubs; the mesh keeps it on
+  // the case.
   double const growth = 4e-4;
   std::string const rule = fmt::format("rule = \"formula\"\ndr = \"{} * (r - 0.09) / (0.167 - 0.09)\"", growth);
   std::string const clearance =

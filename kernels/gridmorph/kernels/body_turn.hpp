@@ -2,29 +2,32 @@
 //
 //   u(x) += sum over bodies b of (R_b(f_b(x)) - I)(x - c_b) + s_b(x) (t_b - t_0)
 //
-// c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the share f of a
-// rotation, t_b the mean displacement of its walls over their area, t_0 that of all other boundaries that are displaced by rules. f_b and s_b are shares planned
-// for each node: 1 on the body and 0 on other boundaries. What walls do beyond that is
-// carried by the rest of a morph; t_0 leaves a motion that all boundaries have in common to it. The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
+// c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the
+// share f of a rotation, t_b the mean displacement of its walls over their area, t_0 that of all other boundaries that
+// are displaced by rules. f_b and s_b are shares planned for each node: 1 on the body and 0 on other boundaries. What
+// walls do beyond that is carried by the rest of a morph; t_0 leaves a motion that all boundaries have in common to it.
+// The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
 // its swept tip goes up.
 //
-// R_b: the rotation nearest to s = sum of w R_w, w the share of a wall node in the area: the unit quaternion that is the eigenvector of
-// the greatest eigenvalue of a symmetric 4x4 matrix of sums of entries of s (B. K. P. Horn, "Closed-form solution of absolute
-// orientation using unit quaternions", JOSA A 4 (1987) 629). Where a body may turn about one axis n alone (in the plane, on a plane that its
-// nodes slide on): by the angle with the tangent n . axial part of s / (trace of s - n . s n). Its rate: R' = R [p]x with
+// R_b: the rotation nearest to s = sum of w R_w, w the share of a wall node in the area: the unit quaternion that is
+// the eigenvector of the greatest eigenvalue of a symmetric 4x4 matrix of sums of entries of s (B. K. P. Horn,
+// "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4 (1987) 629). Where a body may turn
+// about one axis n alone (in the plane, on a plane that its nodes slide on): by the angle with the tangent n . axial
+// part of s / (trace of s - n . s n). Its rate: R' = R [p]x with
 //
 //   (tr(P) I - P) p = axial part of R^T s' - s'^T R,   P = R^T s
 //
 // A body that is not displaced turns by exactly nothing; one whose walls turn in all directions alike by nothing.
 //
-// R(f): the quaternion h of half of R_b, f of the chord from no rotation to h and back onto the sphere, squared. So the angle is f
-// times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half a turn has one axis for all
-// nodes (settled()).
+// R(f): the quaternion h of half of R_b, f of the chord from no rotation to h and back onto the sphere, squared. So the
+// angle is f times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half
+// a turn has one axis for all nodes (settled()).
 //
-// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds Q (R_b(f_k) - I)(Q^T (x - t) - c_b) with a share of its own.
+// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds Q (R_b(f_k) - I)(Q^T
+// (x - t) - c_b) with a share of its own.
 //
-// Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each body, 24 of coordinates
-// and 48 of displacements, about 76 flops where the shares are not zero.
+// Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each
+// body, 24 of coordinates and 48 of displacements, about 76 flops where the shares are not zero.
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
@@ -65,8 +68,8 @@ struct VectorMoments {
   }
 };
 
-/// Of moments of rotated vectors, with those before as first and those after as second ones: (real, imaginary), real not negative; no rotation
-/// where the best one is not the only one.
+/// Of moments of rotated vectors, with those before as first and those after as second ones: (real, imaginary), real
+/// not negative; no rotation where the best one is not the only one.
 KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real, Vec3& imaginary) {
   auto const& m = s.m;
   Vec3 const c = s.crossed();
@@ -93,7 +96,8 @@ KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real
   imaginary = {sign * v[best][1], sign * v[best][2], sign * v[best][3]};
 }
 
-/// The vector p of the head of this file: how the best rotation of moments s turns on, seen from what turns, where they change by `rate`.
+/// The vector p of the head of this file: how the best rotation of moments s turns on, seen from what turns, where they
+/// change by `rate`.
 KOKKOS_INLINE_FUNCTION Vec3 best_rate(VectorMoments const& s, VectorMoments const& rate, Quaternion<Vec3> const& q) {
   // What R^T makes of vectors after is R^T of each row.
   Quaternion<Vec3> const back{-q.imaginary, q.less};
@@ -122,8 +126,8 @@ KOKKOS_INLINE_FUNCTION Vec3 best_rate(VectorMoments const& s, VectorMoments cons
   return (1 / determinant) * (axial.x * c0 + axial.y * c1 + axial.z * c2);
 }
 
-/// The best rotation (as in rotation.hpp) of moments s (vectors before, after), about any axis, or about the unit vector `axis`, if
-/// that is not zero. rate: of s, where V has rates.
+/// The best rotation (as in rotation.hpp) of moments s (vectors before, after), about any axis, or about the unit
+/// vector `axis`, if that is not zero. rate: of s, where V has rates.
 template <class V>
 KOKKOS_INLINE_FUNCTION V best_turn(VectorMoments const& s, [[maybe_unused]] VectorMoments const& rate,
                                    Vec3 const& axis) {

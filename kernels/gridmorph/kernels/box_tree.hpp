@@ -1,13 +1,14 @@
-// A tree of boxes over many things of very different size, and its two questions: which boxes hold a point, and which thing
-// is nearest to it.
+// A tree of boxes over many things of very different size, and its two questions: which boxes hold a point, and which
+// thing is nearest to it.
 //
-// The things stand in the order of a space-filling curve through the centres of their boxes. Group g of level 0 holds the
-// boxes of things 8 g ... 8 g + 7, group g of level l + 1 the boxes of groups 8 g ... 8 g + 7 of level l: numbers say it
-// all, there are no links, and all groups of a level are made side by side. Boxes follow the things, whatever their sizes
-// and shapes are; the depth is log8(n). Boxes are kept in single precision, rounded outwards: 27 bytes per thing in all.
+// The things stand in the order of a space-filling curve through the centres of their boxes. Group g of level 0 holds
+// the boxes of things 8 g ... 8 g + 7, group g of level l + 1 the boxes of groups 8 g ... 8 g + 7 of level l: numbers
+// say it all, there are no links, and all groups of a level are made side by side. Boxes follow the things, whatever
+// their sizes and shapes are; the depth is log8(n). Boxes are kept in single precision, rounded outwards: 27 bytes per
+// thing in all.
 //
-// Order: the Hilbert curve (C. Hamilton, Compact Hilbert indices, 2006), 2^21 steps per axis. Things that follow one another
-// on it are neighbours, and groups compact; Z order jumps and makes groups that overlap.
+// Order: the Hilbert curve (C. Hamilton, Compact Hilbert indices, 2006), 2^21 steps per axis. Things that follow one
+// another on it are neighbours, and groups compact; Z order jumps and makes groups that overlap.
 #pragma once
 
 #include <gridmorph/kernels/lanes.hpp>
@@ -29,8 +30,8 @@ struct Box {
   }
 };
 
-/// Steps of a lattice of 2^21 to an axis: those of a point from `low`, `steps` of them to a unit of length. Points outside
-/// count as those on its limit.
+/// Steps of a lattice of 2^21 to an axis: those of a point from `low`, `steps` of them to a unit of length. Points
+/// outside count as those on its limit.
 struct LatticePlace {
   static constexpr int bits = 21;
   std::uint32_t x, y, z;
@@ -45,8 +46,8 @@ struct LatticePlace {
   }
 };
 
-/// Rules of the Hilbert curve. A state is the corner by which the curve enters a cube and the axis along which it leaves,
-/// entry + 8 * axis; next[state][part] is 8 * (state in that eighth) + its number along the curve.
+/// Rules of the Hilbert curve. A state is the corner by which the curve enters a cube and the axis along which it
+/// leaves, entry + 8 * axis; next[state][part] is 8 * (state in that eighth) + its number along the curve.
 struct HilbertRules {
   std::uint8_t next[24][8];
 };
@@ -225,8 +226,8 @@ struct BoxTreeView {
     }
   }
 
-  /// Calls visit(thing) for things in about the order of the distance of their boxes, as long as that is not larger than
-  /// limit(), the square of the best distance so far. Distances above 1e19 count as that.
+  /// Calls visit(thing) for things in about the order of the distance of their boxes, as long as that is not larger
+  /// than limit(), the square of the best distance so far. Distances above 1e19 count as that.
   template <class Visit, class Limit>
   KOKKOS_INLINE_FUNCTION void for_each_nearer(Vec3 const& p, Visit const& visit, Limit const& limit) const {
     if (n_levels == 0) return;

@@ -1,8 +1,9 @@
-// The loop over the cells or elements of a mesh, in chunks, with one result per chunk: how all measures of quality are launched.
+// The loop over the cells or elements of a mesh, in chunks, with one result per chunk: how all measures of quality are
+// launched.
 //
-// Chunks, and what is joined with what, are the same on every execution space and with any number of threads, so sums repeat
-// bit for bit. On a CPU an item is a chunk, row by row; on a GPU a chunk has a team, and each of its threads a cell.
-// Cost beyond that of the visits: one result written per 1024 cells.
+// Chunks, and what is joined with what, are the same on every execution space and with any number of threads, so sums
+// repeat bit for bit. On a CPU an item is a chunk, row by row; on a GPU a chunk has a team, and each of its threads a
+// cell. Cost beyond that of the visits: one result written per 1024 cells.
 #pragma once
 
 #include <gridmorph/kernels/grid_line.hpp>
@@ -29,8 +30,8 @@ struct ZoneCells {
   }
 };
 
-/// How execution spaces differ: a work item of a CPU takes a chunk row by row, several cells at once; GPUs take one cell
-/// per work item and have a team of threads for the chunk. Chunks are the same everywhere.
+/// How execution spaces differ: a work item of a CPU takes a chunk row by row, several cells at once; GPUs take one
+/// cell per work item and have a team of threads for the chunk. Chunks are the same everywhere.
 template <class Exec>
 struct CellPolicy {
   static constexpr bool on_host =
@@ -40,8 +41,8 @@ struct CellPolicy {
   static constexpr int team_size = on_host ? 1 : 32;   ///< partial sums of a team fit into 48 KiB of scratch memory
 };
 
-/// Cells begin <= n < end of one box of cells, numbered within the box, i fastest. Sums are made chunk by chunk, so they
-/// do not depend on how many threads share the chunks.
+/// Cells begin <= n < end of one box of cells, numbered within the box, i fastest. Sums are made chunk by chunk, so
+/// they do not depend on how many threads share the chunks.
 struct CellChunk {
   int zone = 0;
   int box_begin[3] = {0, 0, 0};
@@ -97,8 +98,8 @@ struct ChunkPerItem {
   }
 };
 
-/// GPUs: one team per chunk, one cell at a time per thread; neighbouring threads read neighbouring cells. Results of the
-/// threads are joined pairwise, always the same pairs, so that sums repeat bit for bit.
+/// GPUs: one team per chunk, one cell at a time per thread; neighbouring threads read neighbouring cells. Results of
+/// the threads are joined pairwise, always the same pairs, so that sums repeat bit for bit.
 template <class Exec, class Result, class Visit>
 struct ChunkPerTeam {
   using Team = typename Kokkos::TeamPolicy<Exec>::member_type;

@@ -19,8 +19,9 @@
 // only, and a direction whose 4 edges are collapsed has no relative displacement. Every measure of a cell with finite
 // corners is therefore defined; `invalid_cell()` is the answer for corners that are not finite.
 //
-// Jacobians below jacobian_tolerance() are zero as far as the coordinates can tell; they count as zero, so that round-off
-// decides about nothing. A cell is inverted where a corner has a negative Jacobian, flat where the smallest one is zero.
+// Jacobians below jacobian_tolerance() are zero as far as the coordinates can tell; they count as zero, so that
+// round-off decides about nothing. A cell is inverted where a corner has a negative Jacobian, flat where the smallest
+// one is zero.
 //
 // Cost of cell_measures: about 1000 flops, 12 square roots, 24 divisions, 2 arc cosines; 24 coordinates are read.
 #pragma once
@@ -49,8 +50,8 @@ inline constexpr double unbounded = HUGE_VAL;
 
 KOKKOS_INLINE_FUNCTION bool is_finite(double a) { return a - a == 0; }
 
-/// Jacobians below this share of the product of the cell's longest edges along its three directions are zero: an angle of
-/// 6e-7 degrees.
+/// Jacobians below this share of the product of the cell's longest edges along its three directions are zero: an angle
+/// of 6e-7 degrees.
 inline constexpr double flat_fraction = 1e-8;
 
 /// A cell is looked at again where its smallest Jacobian is below this share of the largest one, ...
@@ -58,8 +59,8 @@ inline constexpr double nearly_flat = 1e-6;
 /// ... or its volume is below this share of its longest edge cubed.
 inline constexpr double nearly_no_volume = 1e-10;
 
-/// Size of Jacobians that mean zero [length^3]: flat_fraction a b c + 64 eps x (a b + b c + c a), eps = 2^-52. a, b, c: longest
-/// edges along three directions; x: the largest coordinate in size, whose rounding moves the ends of edges.
+/// Size of Jacobians that mean zero [length^3]: flat_fraction a b c + 64 eps x (a b + b c + c a), eps = 2^-52. a, b, c:
+/// longest edges along three directions; x: the largest coordinate in size, whose rounding moves the ends of edges.
 KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double c, double x) {
   return flat_fraction * a * b * c + 0x1p-46 * x * (a * b + b * c + c * a);
 }
@@ -174,8 +175,9 @@ KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexEdges const& edges, unsig
   return r;
 }
 
-/// Smallest / largest Jacobian determinant: 1 for a parallelepiped, negative when any is, never below -1. Where the largest
-/// is not positive: -1, and 0 for a cell that is flat everywhere (or has no point to look at, largest < smallest).
+/// Smallest / largest Jacobian determinant: 1 for a parallelepiped, negative when any is, never below -1. Where the
+/// largest is not positive: -1, and 0 for a cell that is flat everywhere (or has no point to look at, largest <
+/// smallest).
 KOKKOS_INLINE_FUNCTION double determinant_ratio(double smallest, double largest) {
   if (largest > 0) return larger(smallest / largest, -1.0);
   return smallest < 0 ? -1.0 : 0.0;
@@ -198,8 +200,9 @@ KOKKOS_INLINE_FUNCTION JacobianRange jacobian_range(HexCell const& cell, HexEdge
   return r;
 }
 
-/// Smallest over the 8 corners of J / product of the lengths of the three edges there: 1 for right angles, whatever the lengths; negative
-/// where the cell is inverted. Corners with a collapsed edge are left out, 1 where all have one; -1 where a corner is not finite.
+/// Smallest over the 8 corners of J / product of the lengths of the three edges there: 1 for right angles, whatever the
+/// lengths; negative where the cell is inverted. Corners with a collapsed edge are left out, 1 where all have one; -1
+/// where a corner is not finite.
 KOKKOS_INLINE_FUNCTION double scaled_jacobian(HexEdges const& edges, unsigned collapsed, double handedness) {
   double smallest = 1;
   for (int z = 0; z < 2; ++z)

@@ -4,8 +4,8 @@
 // regular, few in any mesh, are marked and measured again one by one with the general functions. The value of a cell
 // depends on its corners alone, not on its place in the row or on the number of lanes.
 //
-// Quantities of the planes of nodes between two cells are computed once per row and kept in scratch arrays. Coordinates of
-// the 4 node lines of a row are read from memory once, and again from the first-level cache.
+// Quantities of the planes of nodes between two cells are computed once per row and kept in scratch arrays. Coordinates
+// of the 4 node lines of a row are read from memory once, and again from the first-level cache.
 #pragma once
 
 #include <gridmorph/kernels/cell_quality.hpp>
@@ -64,8 +64,8 @@ struct CellRow {
   }
 };
 
-/// Calls `f.operator()<T>(n)` for the cells n, n + 1, ... of a row of `count`, until all are done: with T = Lanes<W> and,
-/// where the row is shorter than W, with T = double. The last lanes may take cells a second time.
+/// Calls `f.operator()<T>(n)` for the cells n, n + 1, ... of a row of `count`, until all are done: with T = Lanes<W>
+/// and, where the row is shorter than W, with T = double. The last lanes may take cells a second time.
 template <int W, class Function>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_lanes(int count, Function const& f) {
   if constexpr (W > 1) {
@@ -215,7 +215,8 @@ struct RowVerdicts {
   double mark[N];             ///< nonzero: not a regular cell, the others mean nothing; use cell_measures
 };
 
-/// The same values as row_measures gives, angles as cosines. Cost: about 720 flops per cell, 8 square roots, 9 divisions.
+/// The same values as row_measures gives, angles as cosines. Cost: about 720 flops per cell, 8 square roots, 9
+/// divisions.
 template <int W, int N>
 KOKKOS_INLINE_FUNCTION void row_verdicts(CellRow const& row, RowVerdicts<N>& v) {
   double volume[N];
@@ -279,8 +280,8 @@ KOKKOS_INLINE_FUNCTION void row_relative_displacements(CellRow const& baseline, 
     }
 }
 
-/// How many cells have a positive Jacobian determinant, minus how many have a negative one: the sum of those at the opposite
-/// corners (0, 0, 0) and (1, 1, 1), one of which is sound where an edge or a face is collapsed.
+/// How many cells have a positive Jacobian determinant, minus how many have a negative one: the sum of those at the
+/// opposite corners (0, 0, 0) and (1, 1, 1), one of which is sound where an edge or a face is collapsed.
 KOKKOS_INLINE_FUNCTION int row_orientation(CellRow const& row) {
   int positive = 0;
   for (int n = 0; n < row.count; ++n) {

@@ -1,5 +1,5 @@
-// Is a mesh valid: d = min over its cells of their determinant (cell_row.hpp, element_quality.hpp), and how many have d < 0. Chunk by
-// chunk, then over the chunks.
+// Is a mesh valid: d = min over its cells of their determinant (cell_row.hpp, element_quality.hpp), and how many have d
+// < 0. Chunk by chunk, then over the chunks.
 #pragma once
 
 #include <gridmorph/kernels/cell_chunks.hpp>
@@ -65,7 +65,8 @@ void check_blocks(Exec const& exec, Kokkos::View<CellChunk*, typename Exec::memo
       });
 }
 
-/// The same for elements; determinant_of(element) is 1 where there is none to look at. Those of zone z begin at first_element(z).
+/// The same for elements; determinant_of(element) is 1 where there is none to look at. Those of zone z begin at
+/// first_element(z).
 template <class Exec, class DeterminantOf>
 void check_elements(Exec const& exec, Kokkos::View<CellChunk*, typename Exec::memory_space> const& chunks,
                     Kokkos::View<Index*, typename Exec::memory_space> const& first_element,

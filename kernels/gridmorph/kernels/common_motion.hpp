@@ -1,18 +1,22 @@
-// The affine displacement that a part of a mesh has in common: taken off what its boundary is given, added to all of its nodes.
+// The affine displacement that a part of a mesh has in common: taken off what its boundary is given, added to all of
+// its nodes.
 //
 //   A(x) = a_0 + sum over i of a_i y_i(x),   y_i(x) = axis_i . (x - centre)
 //   a = P s,   s_0 = sum over boundary nodes of w u,   s_i = sum of w y_i u
 //
-// P, twelve by twelve, is what a fit by least squares among the displacements that the part may make leaves of the moments s (plan/common_motion.hpp). The fit
-// is linear in u, and P is symmetric, so that the transpose takes the moments of gradients through the same P. What is left is seen from the mesh that A has
-// moved: with F = I + grad A and the displacement v that the stages give to what is left,
+// P, twelve by twelve, is what a fit by least squares among the displacements that the part may make leaves of the
+// moments s (plan/common_motion.hpp). The fit is linear in u, and P is symmetric, so that the transpose takes the
+// moments of gradients through the same P. What is left is seen from the mesh that A has moved: with F = I + grad A and
+// the displacement v that the stages give to what is left,
 //
 //   v = F^-1 (u - A(x)) at the boundary,   u = v + A(x + v) everywhere
 //
-// so that what turns and bends does so as if nothing were in common; where all stages are linear that is the same as v = u - A(x), u = v + A(x). Where F has no inverse
-// (share 0), that is what is done. Sums run over chunks of nodes, one work item each, then over the chunks in their order: the same bits for any number of threads.
+// so that what turns and bends does so as if nothing were in common; where all stages are linear that is the same as v
+// = u - A(x), u = v + A(x). Where F has no inverse (share 0), that is what is done. Sums run over chunks of nodes, one
+// work item each, then over the chunks in their order: the same bits for any number of threads.
 //
-// Cost: 56 bytes per boundary node for the moments and 72 for what is left; 24 of coordinates and 48 of displacements per node of the part.
+// Cost: 56 bytes per boundary node for the moments and 72 for what is left; 24 of coordinates and 48 of displacements
+// per node of the part.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -23,7 +27,8 @@
 
 namespace gridmorph::kernels {
 
-/// The coordinates y in which moments are taken: along the principal axes of the boundary, of size one; an axis along which it does not extend is zero.
+/// The coordinates y in which moments are taken: along the principal axes of the boundary, of size one; an axis along
+/// which it does not extend is zero.
 struct CommonFrame {
   Vec3 centre;
   Vec3 axis[3];
@@ -152,7 +157,8 @@ struct SumCommonMoments {
   }
 };
 
-/// What boundary nodes are given beyond A, to `rest`. What is no more than the rounding of the fit is none: walls with short edges would turn by it.
+/// What boundary nodes are given beyond A, to `rest`. What is no more than the rounding of the fit is none: walls with
+/// short edges would turn by it.
 template <class MemorySpace>
 struct TakeCommonMotion {
   CommonFrame frame;
@@ -211,7 +217,8 @@ struct AddCommonRate {
   }
 };
 
-/// Transpose of AddCommonMotion for u, or with `Inverse` of TakeCommonMotion for what is given: g becomes F^T g, or F^-T g.
+/// Transpose of AddCommonMotion for u, or with `Inverse` of TakeCommonMotion for what is given: g becomes F^T g, or
+/// F^-T g.
 template <bool Inverse>
 struct PullCommonGradient {
   CommonMove const* move;

@@ -1,10 +1,12 @@
-// The motion in common (common_motion.hpp) of the nodes inside pieces of blocks, row by row within the pass through the volume.
+// The motion in common (common_motion.hpp) of the nodes inside pieces of blocks, row by row within the pass through the
+// volume.
 //
 //   u = v + A(x + v),   rates F v' + A'(x + v)
 //
 // v what chains have made of the rest. What slip surfaces correct comes after it.
 //
-// Cost per node of a part that has one: 24 bytes of coordinates read, where the pass does not read them anyway; about 50 flops.
+// Cost per node of a part that has one: 24 bytes of coordinates read, where the pass does not read them anyway; about
+// 50 flops.
 #pragma once
 
 #include <gridmorph/kernels/common_motion.hpp>

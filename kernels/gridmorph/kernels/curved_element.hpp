@@ -1,21 +1,24 @@
 // Second-order elements: where their Jacobian is positive, everywhere in them, and how much it varies.
 //
-// The map x(r, s, t) has a node amid each edge, and may have one amid each quadrilateral face and the element itself (SIDS: TRI_6, QUAD_8 and 9,
-// TETRA_10, PYRA_13 and 14, PENTA_15 and 18, HEXA_20 and 27). Where those are missing, they are put where the element with
-// fewer nodes has these points: amid a face (sum of edge nodes) / 2 - (sum of corners) / 4, amid a hexahedron both / 4.
+// The map x(r, s, t) has a node amid each edge, and may have one amid each quadrilateral face and the element itself
+// (SIDS: TRI_6, QUAD_8 and 9, TETRA_10, PYRA_13 and 14, PENTA_15 and 18, HEXA_20 and 27). Where those are missing, they
+// are put where the element with fewer nodes has these points: amid a face (sum of edge nodes) / 2 - (sum of corners) /
+// 4, amid a hexahedron both / 4.
 //
-// All are looked at over a cube of parameters u, v, w from 0 to 1. Triangles: l1 = u (1 - v), l2 = v; tetrahedra: l1 = u (1 - v)(1 - w),
-// l2 = v (1 - w), l3 = w; prisms: a triangle, and w along the columns. Pyramids are hexahedra whose top is the apex: halfway up a lateral
-// face has the points of a TRI_6, J has a factor (1 - w)^2, which is left out as in element_quality.hpp. So J, by the element's own coordinates, is
-// a polynomial of some degree in each of u, v, w:
+// All are looked at over a cube of parameters u, v, w from 0 to 1. Triangles: l1 = u (1 - v), l2 = v; tetrahedra: l1 =
+// u (1 - v)(1 - w), l2 = v (1 - w), l3 = w; prisms: a triangle, and w along the columns. Pyramids are hexahedra whose
+// top is the apex: halfway up a lateral face has the points of a TRI_6, J has a factor (1 - w)^2, which is left out as
+// in element_quality.hpp. So J, by the element's own coordinates, is a polynomial of some degree in each of u, v, w:
 //
-//   triangle (2, 2)   quadrilateral (3, 3)   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron (5, 5, 5)
+//   triangle (2, 2)   quadrilateral (3, 3)   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron
+//   (5, 5, 5)
 //
-// Its Bezier coefficients, found from as many values, bound it, and those of its parts ever more closely: A. Johnen, J.-F. Remacle,
-// C. Geuzaine, "Geometrical validity of curvilinear finite elements", J. Comput. Phys. 233 (2013) 359.
+// Its Bezier coefficients, found from as many values, bound it, and those of its parts ever more closely: A. Johnen,
+// J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", J. Comput. Phys. 233 (2013) 359.
 //
-// determinant: min J / max J over the 27 (9) points with parameters 0, 1/2, 1, of triangles and tetrahedra sqrt(2) (2/sqrt(3)) min J over the
-// largest product of the edges of a corner: what element_quality.hpp says of elements with straight edges. Volume: Gauss's rule of 27 points, exact.
+// determinant: min J / max J over the 27 (9) points with parameters 0, 1/2, 1, of triangles and tetrahedra sqrt(2)
+// (2/sqrt(3)) min J over the largest product of the edges of a corner: what element_quality.hpp says of elements with
+// straight edges. Volume: Gauss's rule of 27 points, exact.
 //
 // Cost: 700 flops per point; 54 of them for the measures, up to 216 for the sign and 8,000 flops for each part.
 #pragma once
@@ -82,7 +85,8 @@ KOKKOS_INLINE_FUNCTION void complete(CurvedElement& c) {
   c.at[26] = 0.25 * middles - 0.25 * corners;
 }
 
-/// Nodes of a hexahedron at (a, b, c) / 2, number a + 3 b + 9 c; those of a quadrilateral are the first nine of its table.
+/// Nodes of a hexahedron at (a, b, c) / 2, number a + 3 b + 9 c; those of a quadrilateral are the first nine of its
+/// table.
 KOKKOS_INLINE_FUNCTION constexpr int hexahedron_node(int k) {
   constexpr std::int8_t node[27] = {0,  8,  1,  11, 20, 9,  3, 10, 2,  12, 21, 13, 24, 26,
                                     22, 15, 23, 14, 4,  16, 5, 19, 25, 17, 7,  18, 6};
@@ -98,7 +102,8 @@ KOKKOS_INLINE_FUNCTION Vec3 pyramid_node(CurvedElement const& c, int k) {
   constexpr std::int8_t base[9] = {0, 5, 1, 8, 13, 6, 3, 7, 2};
   if (k >= 18) return c.at[4];
   if (k < 9) return c.at[base[k]];
-  // Halfway up: of a lateral edge its node; of a face with corners p, q the point of a TRI_6 at (1/4, 1/4, 1/2); amid them as complete() does.
+  // Halfway up: of a lateral edge its node; of a face with corners p, q the point of a TRI_6 at (1/4, 1/4, 1/2); amid
+  // them as complete() does.
   auto const edge = [&](int corner) { return c.at[9 + corner]; };
   auto const face = [&](int p, int q) {
     return 0.5 * (edge(p) + edge(q)) + 0.25 * c.at[5 + p] - 0.125 * (c.at[p] + c.at[q]);
@@ -125,7 +130,8 @@ struct Line {
       : n{(1 - u) * (1 - 2 * u), 4 * u * (1 - u), u * (2 * u - 1)}, d{4 * u - 3, 4 - 8 * u, 4 * u - 1} {}
 };
 
-/// dx/dl_j of a simplex, its coordinates taken as independent: (4 l_j - 1) x_j + 4 sum of l_k x_jk. node(j, k): amid corners, node(j, j): at one.
+/// dx/dl_j of a simplex, its coordinates taken as independent: (4 l_j - 1) x_j + 4 sum of l_k x_jk. node(j, k): amid
+/// corners, node(j, j): at one.
 template <int Corners, class Node>
 KOKKOS_INLINE_FUNCTION void simplex_slopes(double const (&l)[Corners], Node const& node, Vec3 (&slope)[Corners]) {
   for (int j = 0; j < Corners; ++j) {

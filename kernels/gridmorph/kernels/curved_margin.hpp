@@ -1,14 +1,17 @@
-// How far an element of second order is from turning inside out between its nodes, and how its further nodes are pulled until it is not.
+// How far an element of second order is from turning inside out between its nodes, and how its further nodes are pulled
+// until it is not.
 //
-// margin: smallest / largest |b| over the Bezier coefficients b of its Jacobian (curved_element.hpp). J is nowhere smaller than that share of the largest:
-// above 0 the element is valid everywhere, 1 is a parallelepiped.
+// margin: smallest / largest |b| over the Bezier coefficients b of its Jacobian (curved_element.hpp). J is nowhere
+// smaller than that share of the largest: above 0 the element is valid everywhere, 1 is a parallelepiped.
 //
-// The offset of a node amid an edge is c = x - (mean of the edge's ends). Where a wall gives its nodes an offset, those of the edges beside are interpolated:
+// The offset of a node amid an edge is c = x - (mean of the edge's ends). Where a wall gives its nodes an offset, those
+// of the edges beside are interpolated:
 //
 //   c_m = sum of w_mk c_k / sum of w_mk,   w_mk = s_mk / |x_m - x_k| in the baseline
 //
-// over the edges k of the elements around m, s_mk = 1 for those opposite to it, or that run alike (offset_share()): a harmonic
-// function between what is given, whose differences are in proportion to lengths. A node goes a share s of the way there: x + s (x* - x).
+// over the edges k of the elements around m, s_mk = 1 for those opposite to it, or that run alike (offset_share()): a
+// harmonic function between what is given, whose differences are in proportion to lengths. A node goes a share s of the
+// way there: x + s (x* - x).
 //
 // Cost: 150,000 flops per margin; 12 flops per pair.
 #pragma once
@@ -28,8 +31,9 @@ KOKKOS_INLINE_FUNCTION double curved_margin(CurvedElement const& c, double sign,
   return is_finite(sum) && largest > 0 ? least / largest : -1.0;
 }
 
-/// How much of the offset of edge `other` of an element is one for edge `edge`: 1 where it is opposite to it. Where an edge has no opposite, cos^8 of the
-/// angle between them, that only those that run almost alike count; their ways are given in the baseline.
+/// How much of the offset of edge `other` of an element is one for edge `edge`: 1 where it is opposite to it. Where an
+/// edge has no opposite, cos^8 of the angle between them, that only those that run almost alike count; their ways are
+/// given in the baseline.
 KOKKOS_INLINE_FUNCTION double offset_share(ElementType type, int edge, int other, Vec3 const& way,
                                            Vec3 const& other_way) {
   if (other == edge) return 0;

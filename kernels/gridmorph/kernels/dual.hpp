@@ -1,9 +1,10 @@
-// Numbers and vectors with their rates of change (dual numbers, forward differentiation): a kernel that is written for a type
-// V of vectors gives its values for V = Vec3 and, from the same source, values and exact rates for V = DualVec3.
+// Numbers and vectors with their rates of change (dual numbers, forward differentiation): a kernel that is written for
+// a type V of vectors gives its values for V = Vec3 and, from the same source, values and exact rates for V = DualVec3.
 //
 //   (a + a' e)(b + b' e) = a b + (a' b + a b') e,   f(a + a' e) = f(a) + f'(a) a' e
 //
-// Values are rounded as those of double and Vec3 are. A root or a norm of zero has the rate zero: formulas that divide by one look first.
+// Values are rounded as those of double and Vec3 are. A root or a norm of zero has the rate zero: formulas that divide
+// by one look first.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>

@@ -9,19 +9,20 @@
 //                                                              0 <= r, s <= w and 0 <= t <= 1
 //   prism          triangle (r, s) times linear in t           hexahedron  trilinear, 0 <= r, s, t <= 1
 //
-// The weights sum to one and are never negative inside, and two elements that share a face agree on it. The pyramid is the
-// rational one of G. Bedrosian (Int. J. Numer. Meth. Engng 35, 1992): bilinear on its base, linear on its triangles and
-// along lines to the apex, where the quotients r / w and s / w stay between 0 and 1 and so all terms and their slopes
-// bounded.
+// The weights sum to one and are never negative inside, and two elements that share a face agree on it. The pyramid is
+// the rational one of G. Bedrosian (Int. J. Numer. Meth. Engng 35, 1992): bilinear on its base, linear on its triangles
+// and along lines to the apex, where the quotients r / w and s / w stay between 0 and 1 and so all terms and their
+// slopes bounded.
 //
-// Inverse. Corners are taken relative to the point, and the map in normal form: with J the Jacobian at the element's centre,
+// Inverse. Corners are taken relative to the point, and the map in normal form: with J the Jacobian at the element's
+// centre,
 //
 //   J^-1 (x(centre + xi) - p) = xi + N(xi) - y,        |N_i| <= bound_i inside the element
 //
-// so that flat elements look like well-shaped ones. Simplices have N = 0: one step. A point with |y| further outside than the
-// bound is not in the element. Else Newton's method with halved steps, at most max_newton_steps of them, from the nearest
-// place to y; where that fails from the centre and eight places around it. Surface elements: the point is projected on the
-// plane of the element's centre.
+// so that flat elements look like well-shaped ones. Simplices have N = 0: one step. A point with |y| further outside
+// than the bound is not in the element. Else Newton's method with halved steps, at most max_newton_steps of them, from
+// the nearest place to y; where that fails from the centre and eight places around it. Surface elements: the point is
+// projected on the plane of the element's centre.
 //
 // Cost: tetrahedron 90 flops; hexahedron 350 and 160 for each step, of which two to four are taken.
 #pragma once
@@ -85,8 +86,8 @@ KOKKOS_INLINE_FUNCTION Vec3 element_position(ElementType type, ElementCorners co
   return c.at[0] + sum;
 }
 
-/// Derivatives of the position along r, s and t; that of a surface element along t is zero. At a pyramid's apex its limit
-/// along the axis.
+/// Derivatives of the position along r, s and t; that of a surface element along t is zero. At a pyramid's apex its
+/// limit along the axis.
 struct ElementJacobian {
   Vec3 r, s, t;
 };
@@ -301,7 +302,8 @@ KOKKOS_INLINE_FUNCTION double bend_bound(ElementType type, NormalForm const& f) 
 
 }  // namespace element
 
-/// Local coordinates moved into the element; those within round-off of a corner's, edge's or face's become exactly that.
+/// Local coordinates moved into the element; those within round-off of a corner's, edge's or face's become exactly
+/// that.
 KOKKOS_INLINE_FUNCTION Vec3 clamp_local(ElementType type, Vec3 const& local) {
   auto const clamp = [](double a, double top) {
     constexpr double round_off = 4e-15;
@@ -334,8 +336,8 @@ KOKKOS_INLINE_FUNCTION Vec3 clamp_local(ElementType type, Vec3 const& local) {
 
 namespace element {
 
-/// Newton's method with halved steps on xi + N(xi) - y = 0. `xi`: start and result. False where it finds no way down or has
-/// used up its steps.
+/// Newton's method with halved steps on xi + N(xi) - y = 0. `xi`: start and result. False where it finds no way down or
+/// has used up its steps.
 KOKKOS_INLINE_FUNCTION bool solve(NormalForm const& f, Vec3& xi) {
   constexpr double small_step = 1e-10;  // from here on only round-off can keep a step from being a good one
   constexpr double small_residual = 2e-15;
@@ -412,13 +414,14 @@ KOKKOS_INLINE_FUNCTION ElementJacobian element_jacobian(ElementType type, Elemen
 
 struct ElementInverse {
   Vec3 local;
-  /// A place was found, inside or outside. Not when the point is too far outside to look, the element has no volume at its
-  /// centre, or Newton's method found no way.
+  /// A place was found, inside or outside. Not when the point is too far outside to look, the element has no volume at
+  /// its centre, or Newton's method found no way.
   bool converged = false;
 };
 
-/// Local coordinates of point p. Points that are outside by more than `reach` (in local coordinates) may be left without an
-/// answer. `local` are numbers within a few elements whatever the element is, as long as its corners are numbers.
+/// Local coordinates of point p. Points that are outside by more than `reach` (in local coordinates) may be left
+/// without an answer. `local` are numbers within a few elements whatever the element is, as long as its corners are
+/// numbers.
 KOKKOS_INLINE_FUNCTION ElementInverse invert_element(ElementType type, ElementCorners const& c, Vec3 const& p,
                                                      double reach) {
   ElementInverse out;

@@ -1,10 +1,10 @@
 // Whether an unstructured element contains a point, and its place nearest to one outside.
 //
-// Nearest place. It lies on a face: on each of them the nearest place of its two triangles (exact for triangular faces), for
-// quadrilateral faces improved by Gauss-Newton steps on the bilinear face that stay within it, where the face can still be
-// nearest: it is nowhere further from its triangles than a quarter of its warp |a - b + c - d|. Never further away than the
-// nearest corner. Distances are those from x(local), so that they belong to the weights there. Cost 500 (tetrahedron) to
-// 2500 flops (hexahedron).
+// Nearest place. It lies on a face: on each of them the nearest place of its two triangles (exact for triangular
+// faces), for quadrilateral faces improved by Gauss-Newton steps on the bilinear face that stay within it, where the
+// face can still be nearest: it is nowhere further from its triangles than a quarter of its warp |a - b + c - d|. Never
+// further away than the nearest corner. Distances are those from x(local), so that they belong to the weights there.
+// Cost 500 (tetrahedron) to 2500 flops (hexahedron).
 #pragma once
 
 #include <gridmorph/kernels/element_map.hpp>
@@ -18,8 +18,9 @@ struct ElementPlace {
   double distance = unbounded;
 };
 
-/// Local coordinates of the point, when no place of the element is further from it than `tolerance`: true; then they lie
-/// within the element, else nothing is written. Elements without volume contain nothing: nearest_in_element() sees them.
+/// Local coordinates of the point, when no place of the element is further from it than `tolerance`: true; then they
+/// lie within the element, else nothing is written. Elements without volume contain nothing: nearest_in_element() sees
+/// them.
 KOKKOS_INLINE_FUNCTION bool element_contains(ElementType type, ElementCorners const& c, Vec3 const& p, double tolerance,
                                              Vec3& local) {
   constexpr double reach = 0.01;  // round-off in coordinates may be so much of a flat element
@@ -125,9 +126,9 @@ KOKKOS_INLINE_FUNCTION FlatFacePlace nearest_on_face(Vec3 const* x, int n) {
 
 }  // namespace element
 
-/// False only when no place of the element is nearer to p than `limit`: its corners all lie beyond a plane that is so far
-/// away. Planes across the way from the point to the nearest corner, and across `towards` (both seen from p). 60 flops per
-/// corner at most.
+/// False only when no place of the element is nearer to p than `limit`: its corners all lie beyond a plane that is so
+/// far away. Planes across the way from the point to the nearest corner, and across `towards` (both seen from p). 60
+/// flops per corner at most.
 KOKKOS_INLINE_FUNCTION bool may_be_nearer(ElementType type, ElementCorners const& c, Vec3 const& p, Vec3 const& towards,
                                           double limit) {
   constexpr double safe = 1 - 1e-6;

@@ -4,24 +4,26 @@
 //   hexahedron     cell_measures() of cell_quality.hpp
 //   determinant    prism, pyramid, quadrilateral: min J / max J over the corners (2x2x2), and over the corners and the
 //                  points half way between them (3x3x3), J the Jacobian determinant of the element's own map
-//     prism          x = linear in the triangle times linear along the columns; 9 points are enough, because J is linear
+//     prism          x = linear in the triangle times linear along the columns; 9 points are enough, because J is
+//     linear
 //                    in the triangle at each height
 //     pyramid        x = (1 - t) b(r, s) + t apex, b the bilinear base: J = (1 - t)^2 (b_r x b_s) . (apex - b). The
 //                    factor, which vanishes at the apex whatever the shape, is left out: 4 and 9 points of the base
 //   determinant    tetrahedron, triangle: J is constant, so the ratio says nothing. Instead the scaled Jacobian
 //                  sqrt(2) J / max over the corners of the product of their 3 edge lengths (triangle: 2/sqrt(3) J / max
-//                  of the product of 2), 1 for the regular element; P. Knupp, "Algebraic mesh quality metrics", SIAM J. Sci.
-//                  Comput. 23 (2001) 193; C. Stimpson et al., "The Verdict geometric quality library", SAND2007-1751
+//                  of the product of 2), 1 for the regular element; P. Knupp, "Algebraic mesh quality metrics", SIAM J.
+//                  Sci. Comput. 23 (2001) 193; C. Stimpson et al., "The Verdict geometric quality library",
+//                  SAND2007-1751
 //   volume         integral of J, exact; the area in 2-D
 //   aspect ratio   longest / shortest edge
 //   angles         between the edges in each corner of each face
 //   skewness       max((amax - a) / (180 - a), (a - amin) / a), a = 60 degrees in triangles, 90 in quadrilaterals
-//   relative       for each set of edges along one direction (edge_direction) the largest |u_p - u_q| over its edges pq,
-//   displacement   divided by their mean baseline length; the largest of them (u: displacement)
+//   relative       for each set of edges along one direction (edge_direction) the largest |u_p - u_q| over its edges
+//   pq, displacement   divided by their mean baseline length; the largest of them (u: displacement)
 //
-// In 2-D, J is taken along the unit normal of the plane. Edges shorter than collapsed_fraction of the longest one leave no
-// trace, and Jacobians that are round-off count as zero, as in cell_quality.hpp. Cost: 170 flops, 12 divisions, 5 square roots and 2 arc cosines
-// (tetrahedron) to 1000 flops (hexahedron).
+// In 2-D, J is taken along the unit normal of the plane. Edges shorter than collapsed_fraction of the longest one leave
+// no trace, and Jacobians that are round-off count as zero, as in cell_quality.hpp. Cost: 170 flops, 12 divisions, 5
+// square roots and 2 arc cosines (tetrahedron) to 1000 flops (hexahedron).
 #pragma once
 
 #include <gridmorph/kernels/cell_quality.hpp>
@@ -246,8 +248,8 @@ KOKKOS_INLINE_FUNCTION double scaled_simplex(EdgeLengths const& e, double j) {
   return smaller(1.0, larger(-1.0, ratio));
 }
 
-/// Size of Jacobians that mean zero. Directions: those of edge_direction in quadrilaterals, the base and the longest of the
-/// lateral edges in pyramids, triangles and columns in prisms, the corner with the shortest edges in simplices.
+/// Size of Jacobians that mean zero. Directions: those of edge_direction in quadrilaterals, the base and the longest of
+/// the lateral edges in pyramids, triangles and columns in prisms, the corner with the shortest edges in simplices.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION double tolerance(ElementCorners const& c, EdgeLengths const& e) {
   double const x = largest_component(c.at, n_corners(type)), longest = compat::math::sqrt(e.longest);
@@ -436,7 +438,8 @@ KOKKOS_INLINE_FUNCTION double element_volume(ElementType type, ElementCorners co
   return 0;
 }
 
-/// Relative displacement of an element that moved from `baseline` to `morphed`; `unbounded` where a corner is not finite.
+/// Relative displacement of an element that moved from `baseline` to `morphed`; `unbounded` where a corner is not
+/// finite.
 KOKKOS_INLINE_FUNCTION double element_relative_displacement(ElementType type, ElementCorners const& baseline,
                                                             ElementCorners const& morphed) {
   using element::relative_displacement_of, element::simplex_relative_displacement;

@@ -6,8 +6,8 @@
 //   prism          bottom 0 1 2, top 3 4 5          hexahedron     bottom 0 1 2 3, top 4 5 6 7
 //
 // Bases are counter-clockwise when seen from inside the element; faces of volume elements are listed so that their
-// normals point outwards, and edges of surface elements so that the element lies on their left. Second-order elements list
-// their corners first, so that these tables serve them too.
+// normals point outwards, and edges of surface elements so that the element lies on their left. Second-order elements
+// list their corners first, so that these tables serve them too.
 #pragma once
 
 #include <Kokkos_Core.hpp>
@@ -63,8 +63,8 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr int edge_corner(ElementType type, int edge
   return corner[int(type)][edge][end];
 }
 
-/// Edges of one number run along the same direction of the element, opposite to one another; where an edge has no opposite
-/// it has a number of its own. Numbers begin with 0.
+/// Edges of one number run along the same direction of the element, opposite to one another; where an edge has no
+/// opposite it has a number of its own. Numbers begin with 0.
 KOKKOS_INLINE_FUNCTION constexpr int edge_direction(ElementType type, int edge) {
   constexpr std::int8_t direction[n_element_types - 1][max_edges] = {{0, 1, 2},
                                                                      {0, 1, 0, 1},
@@ -93,8 +93,8 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr int face_corner(ElementType type, int face
   return corner[int(type)][face][at];
 }
 
-/// The corner that a grid line through corner `corner` of side `face` leads to, away from the side; -1 where the element has
-/// no such line: only prisms over their triangles, hexahedra, and quadrilaterals form layers.
+/// The corner that a grid line through corner `corner` of side `face` leads to, away from the side; -1 where the
+/// element has no such line: only prisms over their triangles, hexahedra, and quadrilaterals form layers.
 KOKKOS_INLINE_FUNCTION constexpr int layer_corner(ElementType type, int face, int corner) {
   bool const layers = type == ElementType::quadrilateral || type == ElementType::hexahedron ||
                       (type == ElementType::prism && n_face_corners(type, face) == 3);

@@ -1,6 +1,8 @@
-// Faces, centres and volumes of elements of any shape, as finite-volume solvers take them, and what they say about its quality.
+// Faces, centres and volumes of elements of any shape, as finite-volume solvers take them, and what they say about its
+// quality.
 //
-// A face with corners p_k: c = mean of its corners, triangles (p_k, p_k+1, c) with normals n_k (half of the cross product);
+// A face with corners p_k: c = mean of its corners, triangles (p_k, p_k+1, c) with normals n_k (half of the cross
+// product);
 //
 //   S = sum of n_k,   f = sum of |n_k| (p_k + p_k+1 + c) / 3 / sum of |n_k|
 //
@@ -8,21 +10,26 @@
 //
 //   V = sum of V_f,   x_c = sum of V_f (3 f + c_0) / 4 / V
 //
-// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2, x_c = sum of V_f (2 f + c_0) / 3 / V.
+// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2, x_c = sum of V_f (2 f + c_0) / 3 /
+// V.
 //
 //   non-orthogonality  of an inner face between elements at x and y: the angle between S and d = y - x
-//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f; h = the largest of 0.2 |d|
-//                      and |s . (p_k - f)| / |s|. On the boundary d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of 0.2 |d|
+//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f; h =
+//   the largest of 0.2 |d|
+//                      and |s . (p_k - f)| / |s|. On the boundary d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of
+//                      0.2 |d|
 //
-// These are the definitions by which OpenFOAM builds and checks meshes (its user guide, checkMesh; H. Jasak, "Error analysis and estimation for
-// the finite volume method", thesis, Imperial College 1996, section 3.2). Cost: 45 flops and a square root per corner of a face.
+// These are the definitions by which OpenFOAM builds and checks meshes (its user guide, checkMesh; H. Jasak, "Error
+// analysis and estimation for the finite volume method", thesis, Imperial College 1996, section 3.2). Cost: 45 flops
+// and a square root per corner of a face.
 #pragma once
 
 #include <gridmorph/kernels/cell_quality.hpp>
 
 namespace gridmorph::kernels {
 
-/// S, f and the sum of the areas of its triangles (in 2-D: of its length), of which |S| is a share where a face is warped.
+/// S, f and the sum of the areas of its triangles (in 2-D: of its length), of which |S| is a share where a face is
+/// warped.
 struct FaceGeometry {
   Vec3 area, centre;
   double size = 0;
@@ -100,7 +107,8 @@ KOKKOS_INLINE_FUNCTION double non_orthogonality_deg(FaceGeometry const& face, Ve
   return degrees * arc_cosine(dot(face.area, d) / lengths);
 }
 
-/// d: between the centres on both sides, or on the boundary from the element's centre straight to the face; least: 0.2 or 0.4.
+/// d: between the centres on both sides, or on the boundary from the element's centre straight to the face; least: 0.2
+/// or 0.4.
 template <class CornerAt>
 KOKKOS_INLINE_FUNCTION double face_skewness(FaceGeometry const& face, Vec3 const& own, Vec3 const& d, double least,
                                             int n, CornerAt const& at) {

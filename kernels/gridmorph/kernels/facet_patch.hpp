@@ -7,14 +7,15 @@
 // whose two bends a, b make it tangent to the surface at its ends. Facets that share an edge share the curve.
 //   quadrilateral  Coons patch of its four edges (Coons 1967): the bilinear patch plus the bends of each edge faded
 //                  linearly to the opposite one
-//   triangle       cubic Bezier triangle through its three edges whose middle control point reproduces quadratics (the PN
+//   triangle       cubic Bezier triangle through its three edges whose middle control point reproduces quadratics (the
+//   PN
 //                  triangle of Vlachos, Peters, Boyd and Mitchell 2001)
 // The normals at the corners are interpolated, (bi)linearly, to a normal field that is continuous across edges.
 //
 // Order. The distance of the facet from a smooth surface whose points and tangent planes it has at its corners is, as a
-// function of the local coordinates, zero with its gradient at the corners. On a square no polynomial of degree three is:
-// quadrilaterals are off by O(h^4). On a triangle one is, the bubble: triangles are off by O(h^3). Tangent planes that
-// are off by an angle e add O(h e). A planar facet is exactly planar.
+// function of the local coordinates, zero with its gradient at the corners. On a square no polynomial of degree three
+// is: quadrilaterals are off by O(h^4). On a triangle one is, the bubble: triangles are off by O(h^3). Tangent planes
+// that are off by an angle e add O(h e). A planar facet is exactly planar.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
@@ -41,8 +42,9 @@ struct FacetPlace {
   Vec3 n, n_u, n_v;
 };
 
-/// A facet with its numbers looked up. Local coordinates: quadrilateral 0 <= u, v <= 1 with corners (0,0), (1,0), (1,1),
-/// (0,1); triangle 0 <= u, v and u + v <= 1 with corners (0,0), (1,0), (0,1). Defined, smoothly, beyond that too.
+/// A facet with its numbers looked up. Local coordinates: quadrilateral 0 <= u, v <= 1 with corners (0,0), (1,0),
+/// (1,1), (0,1); triangle 0 <= u, v and u + v <= 1 with corners (0,0), (1,0), (0,1). Defined, smoothly, beyond that
+/// too.
 struct FacetPatch {
   Vec3 p[4], n[4];
   Vec3 a[4], b[4];  ///< bends of edge q beside its first and second corner

@@ -5,13 +5,13 @@
 //   s(u, v) + d n(u, v) = p,
 //
 // with facet s and interpolated normals n of facet_patch.hpp ("Phong projection", Panozzo, Baran, Diamanti and
-// Sorkine-Hornung 2013). Where the surface is smooth that is its closest point up to O(d h^2) along it. Unlike the closest
-// point of a faceted surface it moves continuously and without stops as p crosses from facet to facet, because both
-// facets have the edge's curve and normals in common.
+// Sorkine-Hornung 2013). Where the surface is smooth that is its closest point up to O(d h^2) along it. Unlike the
+// closest point of a faceted surface it moves continuously and without stops as p crosses from facet to facet, because
+// both facets have the edge's curve and normals in common.
 //
 // Search: the nearest place on the flat facets (facet_tree.hpp), from there Newton's method, going on in the next facet
-// where it leaves one. At a crease the foot stays where the wedge between the two normals begins; a convex crease catches
-// what is in the wedge. Beyond a rim the foot is on the rim, and slide() goes on along the tangent plane there.
+// where it leaves one. At a crease the foot stays where the wedge between the two normals begins; a convex crease
+// catches what is in the wedge. Beyond a rim the foot is on the rim, and slide() goes on along the tangent plane there.
 //
 // No allocation, bounded stack and steps. Cost: O(log facets) for the search and about 5 Newton steps of 300 flops.
 #pragma once
@@ -121,8 +121,8 @@ struct FacetSurfaceView {
     }
   };
 
-  /// Where grid lines have kinks, local coordinates of facets beside them may fold, and the way from facet to facet go in circles: the foot
-  /// is then the nearest place of the flat facets, on the curved one; on a rim that across from p.
+  /// Where grid lines have kinks, local coordinates of facets beside them may fold, and the way from facet to facet go
+  /// in circles: the foot is then the nearest place of the flat facets, on the curved one; on a rim that across from p.
   KOKKOS_INLINE_FUNCTION void stay_near(Walk& walk, FlatPlace const& flat, Vec3 const& p) const {
     using std::fabs;
     constexpr double on_edge = 1e-9;

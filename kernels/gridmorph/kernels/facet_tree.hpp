@@ -37,8 +37,8 @@ KOKKOS_INLINE_FUNCTION double share(double part, double whole) {
   return whole > 0 && part > 0 ? (part < whole ? part / whole : 1.0) : 0.0;
 }
 
-/// Weights of b and c at the place of triangle a, b, c nearest to p (Ericson, Real-Time Collision Detection 2005, 5.1.5,
-/// with guards for triangles without area).
+/// Weights of b and c at the place of triangle a, b, c nearest to p (Ericson, Real-Time Collision Detection
+/// 2005, 5.1.5, with guards for triangles without area).
 KOKKOS_INLINE_FUNCTION void nearest_on_triangle(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c,
                                                 double& to_b, double& to_c) {
   Vec3 const ab = b - a, ac = c - a;

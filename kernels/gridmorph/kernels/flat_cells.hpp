@@ -1,9 +1,9 @@
 // Cells that were flat before a morph: how much of a negative Jacobian is no loss.
 //
-// A cell without volume, as at a collapsed tip, gets some of either sign from any morph, and none of it is worth a failure. What tells
-// is J in the corners against the lengths of the edges that meet there, which is 1 where they are at right angles whatever their
-// lengths: a cell within `flat_before` of zero was flat, and it stays so as long as no corner falls to -`flat_allowance`. Asked of cells
-// alone whose sign changed, so its cost is none.
+// A cell without volume, as at a collapsed tip, gets some of either sign from any morph, and none of it is worth a
+// failure. What tells is J in the corners against the lengths of the edges that meet there, which is 1 where they are
+// at right angles whatever their lengths: a cell within `flat_before` of zero was flat, and it stays so as long as no
+// corner falls to -`flat_allowance`. Asked of cells alone whose sign changed, so its cost is none.
 #pragma once
 
 #include <gridmorph/kernels/element_quality.hpp>
@@ -23,8 +23,8 @@ struct FlatCell {
 
 namespace element {
 
-/// Gathers J / product of the lengths of the edges over corners. x: the largest coordinate, whose rounding moves the ends of edges;
-/// what that can make of J is zero. Corners with an edge not longer than `collapsed` are left out.
+/// Gathers J / product of the lengths of the edges over corners. x: the largest coordinate, whose rounding moves the
+/// ends of edges; what that can make of J is zero. Corners with an edge not longer than `collapsed` are left out.
 struct ScaledCorners {
   double sign, x, collapsed;
   double smallest = unbounded;
@@ -70,8 +70,9 @@ KOKKOS_INLINE_FUNCTION double scaled_corners(ElementCorners const& c, double sig
 
 }  // namespace element
 
-/// Smallest over the corners (the apex of a pyramid left out) of J / product of the lengths of the edges there; 0 where all corners are
-/// collapsed, -1 where one is not finite. Of elements that are no polyhedra; sign and plane_normal as in element_measures().
+/// Smallest over the corners (the apex of a pyramid left out) of J / product of the lengths of the edges there; 0 where
+/// all corners are collapsed, -1 where one is not finite. Of elements that are no polyhedra; sign and plane_normal as
+/// in element_measures().
 KOKKOS_INLINE_FUNCTION double scaled_jacobian(ElementType type, ElementCorners const& c, double sign,
                                               Vec3 const& plane_normal) {
   using element::scaled_corners;

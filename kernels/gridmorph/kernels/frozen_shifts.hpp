@@ -2,8 +2,9 @@
 //
 //   a_d = sum over boundary nodes b of g_d(b) . u(b),    u(n) += sum over d of a_d s_d(n)
 //
-// The sum over the boundary runs over chunks of its nodes, one work item for each and d, then over the chunks in their order: the same bits
-// for any number of threads. Points on slip surfaces go back onto them (slip_edge.hpp). A shift that is zero leaves the node's bits.
+// The sum over the boundary runs over chunks of its nodes, one work item for each and d, then over the chunks in their
+// order: the same bits for any number of threads. Points on slip surfaces go back onto them (slip_edge.hpp). A shift
+// that is zero leaves the node's bits.
 //
 // Cost: 24 bytes of g and of u per boundary node and d; per node that moves 24 of s for each d, and 48 of its vector.
 #pragma once
@@ -73,7 +74,8 @@ struct AddShifts {
   }
 };
 
-/// A point of a mesh of blocks that slides: where its displacement is, and what it slides on in the frame of one of its nodes.
+/// A point of a mesh of blocks that slides: where its displacement is, and what it slides on in the frame of one of its
+/// nodes.
 struct SlidingShift {
   Index slot;               ///< of the skeleton
   Index node;               ///< in whose frame surfaces and shifts are
@@ -116,7 +118,8 @@ struct AddSlidingShifts {
     out.set(at.node, moved(out[at.node], in_frame(at.to_node, of_slot)));
   }
 
-  /// The rate with which a point that slides moves where what it is asked to does by `rate`, in the frame of SlidingShift::node.
+  /// The rate with which a point that slides moves where what it is asked to does by `rate`, in the frame of
+  /// SlidingShift::node.
   KOKKOS_INLINE_FUNCTION Vec3 rate_at(Index slide, Vec3 rate) const {
     Vec3 wanted = in_frame(slides(slide).to_node, u[slides(slide).slot]) + shift(slide);
     constrain(slides(slide), wanted, rate);

@@ -1,7 +1,7 @@
 // Grid lines as plain data: which nodes follow one another, and who writes them.
 //
-// A chain is one cuboid of nodes (s, a, b): s along the grid lines, a and b across. It is cut into tubes (one piece of a
-// zone across), a tube into segments (one piece of a zone along). A line is one (a, b) of a tube; it runs through all
+// A chain is one cuboid of nodes (s, a, b): s along the grid lines, a and b across. It is cut into tubes (one piece of
+// a zone across), a tube into segments (one piece of a zone along). A line is one (a, b) of a tube; it runs through all
 // segments of the tube. Everything is flat and trivially copyable, so that one launch can take any set of independent
 // lines from all zones of a mesh.
 #pragma once
@@ -101,8 +101,8 @@ KOKKOS_INLINE_FUNCTION double cubic_weight(double a, double b, double s) {
   return s * s * (3 - 2 * s) + s * r * (a * r - b * s);
 }
 
-/// Where a law is given by its values and slopes at n + 1 knots s = m / n: the cubic between two of them (Hermite). knots: w and
-/// (dw/ds) / n of each, one after another.
+/// Where a law is given by its values and slopes at n + 1 knots s = m / n: the cubic between two of them (Hermite).
+/// knots: w and (dw/ds) / n of each, one after another.
 KOKKOS_INLINE_FUNCTION double table_weight(double const* knots, int n, double s) {
   double const place = s * n;
   int const m = place < n - 1 ? int(place) : n - 1;

@@ -2,8 +2,8 @@
 //
 //   value(target_r) = sum over k of w_k source(item_k),   first(r) <= k < first(r + 1),   sum of w_k = 1
 //
-// Written in differences from the first source, so that equal sources give exactly their value; the weight of the first item
-// is never read. Each value is written by its own row alone: results do not depend on the number of threads.
+// Written in differences from the first source, so that equal sources give exactly their value; the weight of the first
+// item is never read. Each value is written by its own row alone: results do not depend on the number of threads.
 //
 // Cost: 12 bytes per row, 8 and a source per item read, a value per row written; sources in cache where rows follow one
 // another in space.

@@ -1,13 +1,15 @@
-// A smooth field between scattered boundary values, on the nodes of an even lattice (plan/inverse_distance_field.hpp has
-// the weights):
+// A smooth field between scattered boundary values, on the nodes of an even lattice (plan/inverse_distance_field.hpp
+// has the weights):
 //
 //   v(x) = sum over n of w_n v_n(x) / sum over n of w_n,    w_n = A_n / |x - x_n|^p
 //
-// (Shepard 1968; with areas: Luke, Collins and Blades 2012), far groups of boundary nodes as one. What a boundary node says
-// is a value, or a motion v_n(x) = u + G (x - x_n): a wall that turns rigidly then says the same rigid motion everywhere.
+// (Shepard 1968; with areas: Luke, Collins and Blades 2012), far groups of boundary nodes as one. What a boundary node
+// says is a value, or a motion v_n(x) = u + G (x - x_n): a wall that turns rigidly then says the same rigid motion
+// everywhere.
 //
-// Three sets of rows: leaves from boundary nodes, groups from their two parts level by level, lattice nodes from groups. Cost
-// per boundary node and lattice node a few dozen groups, 8 bytes each and the group's value (24 bytes, motion: 96) from cache.
+// Three sets of rows: leaves from boundary nodes, groups from their two parts level by level, lattice nodes from
+// groups. Cost per boundary node and lattice node a few dozen groups, 8 bytes each and the group's value (24 bytes,
+// motion: 96) from cache.
 #pragma once
 
 #include <gridmorph/kernels/interpolation_rows.hpp>
@@ -88,7 +90,8 @@ struct LatticeFromGroups {
   }
 };
 
-/// given: what the boundary nodes say, in the order of the plan. group: one per group, workspace. value: one per lattice node.
+/// given: what the boundary nodes say, in the order of the plan. group: one per group, workspace. value: one per
+/// lattice node.
 template <class Exec, class Value>
 void spread_to_lattice(Exec const& exec, InverseDistanceTable<typename Exec::memory_space> const& table,
                        Value const* given, Value* group, Vec3* value) {

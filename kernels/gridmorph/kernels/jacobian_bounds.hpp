@@ -1,29 +1,32 @@
 // Where the Jacobian of a cell is positive: everywhere in it, not at some points alone.
 //
-// J is a polynomial in local coordinates. Its Bezier coefficients bound it: J is a weighted mean of them with weights that are
-// never negative. All positive: the cell is valid everywhere. Coefficients at corners are values of J: one negative, and the cell is
-// not. Otherwise the cell is halved, which brings the coefficients closer to J, until one or the other holds (A. Johnen, J.-F.
-// Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", J. Comput. Phys. 233 (2013) 359;
-// A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear hexahedral element", 2017).
+// J is a polynomial in local coordinates. Its Bezier coefficients bound it: J is a weighted mean of them with weights
+// that are never negative. All positive: the cell is valid everywhere. Coefficients at corners are values of J: one
+// negative, and the cell is not. Otherwise the cell is halved, which brings the coefficients closer to J, until one or
+// the other holds (A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", J.
+// Comput. Phys. 233 (2013) 359; A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear
+// hexahedral element", 2017).
 //
-// Hexahedron, x trilinear: J = a . (b x c), with a, b, c the tangents along i, j, k, is of degree 2 in each direction. Its coefficients
-// at corners (c) and edges (e) come from edge vectors; those of faces (f) and of the centre (m) from them, because no term of
-// J is of degree 2 in two directions (both tangents that are linear in those would be the same vector):
+// Hexahedron, x trilinear: J = a . (b x c), with a, b, c the tangents along i, j, k, is of degree 2 in each direction.
+// Its coefficients at corners (c) and edges (e) come from edge vectors; those of faces (f) and of the centre (m) from
+// them, because no term of J is of degree 2 in two directions (both tangents that are linear in those would be the same
+// vector):
 //
 //   f = (2 sum of 4 e - sum of 4 c) / 4,     m = (2 sum of 4 f - sum of 4 e) / 4 in the layer between two sides
 //
-// In rows of cells a looser bound comes first, J at the centre less what the other terms can take away (jacobian_floor()); most cells
-// are that close to parallelepipeds, and nothing else is needed.
+// In rows of cells a looser bound comes first, J at the centre less what the other terms can take away
+// (jacobian_floor()); most cells are that close to parallelepipeds, and nothing else is needed.
 //
-// Prism: of degree 1 in the triangle and 2 along the columns, so a quadratic along each column decides. Pyramid: the factor
-// (1 - t)^2 left out as in element_quality.hpp, of degree 2 in both directions of the base. Tetrahedra have one J.
+// Prism: of degree 1 in the triangle and 2 along the columns, so a quadratic along each column decides. Pyramid: the
+// factor (1 - t)^2 left out as in element_quality.hpp, of degree 2 in both directions of the base. Tetrahedra have one
+// J.
 //
-// Round-off. Each coefficient is within 100 eps a b c of its exact value for the coordinates as they are, a, b, c being the longest
-// edges: what is called valid lies above that. What lies below zero by less than jacobian_tolerance() is zero as far as
-// coordinates can tell, as in cell_quality.hpp.
+// Round-off. Each coefficient is within 100 eps a b c of its exact value for the coordinates as they are, a, b, c being
+// the longest edges: what is called valid lies above that. What lies below zero by less than jacobian_tolerance() is
+// zero as far as coordinates can tell, as in cell_quality.hpp.
 //
-// Cost per hexahedron of a row: about 260 flops and its corners read once; 450 more where the looser bound does not tell. Others, and those that
-// have to be looked at twice, about 1000, and 600 for each time they are halved.
+// Cost per hexahedron of a row: about 260 flops and its corners read once; 450 more where the looser bound does not
+// tell. Others, and those that have to be looked at twice, about 1000, and 600 for each time they are halved.
 #pragma once
 
 #include <gridmorph/kernels/cell_row.hpp>
@@ -81,7 +84,8 @@ struct BezierCube {
   }
 };
 
-/// arithmetic: what rounding may do to a coefficient; tolerance >= arithmetic: what is zero as far as coordinates can tell.
+/// arithmetic: what rounding may do to a coefficient; tolerance >= arithmetic: what is zero as far as coordinates can
+/// tell.
 KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arithmetic, double tolerance) {
   struct Piece {
     BezierCube b;
@@ -108,8 +112,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arit
   return sign;
 }
 
-/// Of a plane of constant i: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at the corners, and the squares
-/// of the longest.
+/// Of a plane of constant i: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at the corners,
+/// and the squares of the longest.
 template <class T>
 struct PlaneNormals {
   LaneVec3<T> j0, j1, k0, k1;
@@ -227,9 +231,10 @@ KOKKOS_FORCEINLINE_FUNCTION T sum_norm(LaneVec3<T> const& a) {
   return (absolute(a.x) + absolute(a.y)) + absolute(a.z);
 }
 
-/// With coordinates from -1 to 1, 8 x = ... + A xi + B eta + C zeta + P xi eta + Q xi zeta + R eta zeta + S xi eta zeta. Then 64 J is
-/// A . (B x C) and monomials, none of them larger anywhere than its coefficient: those of xi, eta, zeta as they are, others
-/// no larger than the norms of their vectors allow. Loose where cells are far from parallelepipeds; 200 flops.
+/// With coordinates from -1 to 1, 8 x = ... + A xi + B eta + C zeta + P xi eta + Q xi zeta + R eta zeta + S xi eta
+/// zeta. Then 64 J is A . (B x C) and monomials, none of them larger anywhere than its coefficient: those of xi, eta,
+/// zeta as they are, others no larger than the norms of their vectors allow. Loose where cells are far from
+/// parallelepipeds; 200 flops.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION JacobianFloor<T> jacobian_floor(CellEdges<T> const& e, T const& handedness) {
   LaneVec3<T> const i0 = e.i.v00 + e.i.v10, i1 = e.i.v01 + e.i.v11, d0 = e.i.v10 - e.i.v00, d1 = e.i.v11 - e.i.v01;
@@ -305,7 +310,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign pyramid_sign(ElementCorners const& c, double
   Vec3 const r[2] = {c.at[1] - c.at[0], c.at[2] - c.at[3]}, s[2] = {c.at[3] - c.at[0], c.at[2] - c.at[1]};
   Vec3 const axis[2][2] = {{c.at[4] - c.at[0], c.at[4] - c.at[3]}, {c.at[4] - c.at[1], c.at[4] - c.at[2]}};
   double sum[3][3] = {};
-  // Products of what is linear in s (r, axis) and in r (s, axis): each falls on the coefficient with the sum of its numbers.
+  // Products of what is linear in s (r, axis) and in r (s, axis): each falls on the coefficient with the sum of its
+  // numbers.
   for (int i = 0; i < 2; ++i)      // of axis in r
     for (int j = 0; j < 2; ++j)    // of axis in s
       for (int m = 0; m < 2; ++m)  // of s in r
@@ -317,7 +323,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign pyramid_sign(ElementCorners const& c, double
   return sign_of(b, arithmetic, zero);
 }
 
-/// Of an element of one type that is no hexahedron. In 2-D, corners decide: J is linear along each edge of a quadrilateral.
+/// Of an element of one type that is no hexahedron. In 2-D, corners decide: J is linear along each edge of a
+/// quadrilateral.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION JacobianSign sign_of_type(ElementCorners const& c, double sign, Vec3 const& plane_normal) {
   EdgeLengths const e = edge_lengths<type>(c);

@@ -1,6 +1,7 @@
-// What the surfaces of nodes that move as one ask of them together: of a node, and of its images behind periodic boundaries, each on
-// surfaces of its own, u_k = R_k u. All are put where these want them by constrain_to_all() of slip_edge.hpp, each surface seen in the
-// frame of the node: u + R_k^T (constrain(R_k u) - R_k u). So are displacements that rules give, unless they are there to within a tolerance.
+// What the surfaces of nodes that move as one ask of them together: of a node, and of its images behind periodic
+// boundaries, each on surfaces of its own, u_k = R_k u. All are put where these want them by constrain_to_all() of
+// slip_edge.hpp, each surface seen in the frame of the node: u + R_k^T (constrain(R_k u) - R_k u). So are displacements
+// that rules give, unless they are there to within a tolerance.
 //
 // Cost per entry: 48 bytes, 12 for each surface and 24 for each image, and the surfaces' own.
 #pragma once
@@ -12,8 +13,8 @@
 
 namespace gridmorph::kernels {
 
-/// A surface as a displacement sees it that moves another node by R u. What slip_edge.hpp asks of a SlipSurfaceView, at the place of that
-/// node whatever baseline is given.
+/// A surface as a displacement sees it that moves another node by R u. What slip_edge.hpp asks of a SlipSurfaceView, at
+/// the place of that node whatever baseline is given.
 struct SurfaceOfImage {
   SlipSurfaceView const& surface;
   Vec3 place;
@@ -85,8 +86,9 @@ struct CopyGiven {
   Vec3* kept;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { kept[n] = given[n]; }
 };
-/// kept(slot(k)) = what the surfaces of entry k make of given(slot(k)), where that is farther off than a tolerance; with `Rate` also the
-/// rate, which knows nothing of it: what leads off a surface does not last longer than the way to there.
+/// kept(slot(k)) = what the surfaces of entry k make of given(slot(k)), where that is farther off than a tolerance;
+/// with `Rate` also the rate, which knows nothing of it: what leads off a surface does not last longer than the way to
+/// there.
 template <class MemorySpace, bool Rate>
 struct PutBackGiven {
   JointSlipTable<MemorySpace> table;

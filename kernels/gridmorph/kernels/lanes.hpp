@@ -1,8 +1,8 @@
 // Several doubles computed at once: the vector type of the compiler on CPUs, one double where a GPU thread works alone.
 //
 // Kernels that are templates on their number type T compile for T = double and T = Lanes<W> from the same source. They
-// must be free of branches: `c ? a : b` chooses per lane, with both sides computed. Each lane rounds exactly as a double
-// does, so results do not depend on W. Square roots become one instruction only with -fno-math-errno.
+// must be free of branches: `c ? a : b` chooses per lane, with both sides computed. Each lane rounds exactly as a
+// double does, so results do not depend on W. Square roots become one instruction only with -fno-math-errno.
 #pragma once
 
 #include <gridmorph/kernels/kokkos_compat.hpp>

@@ -1,7 +1,7 @@
 // Fields on an even lattice, read at the nodes of a mesh: what they miss of given values, and shares of them.
 //
-// Cost per node: 24 bytes of coordinates, 8 corners of a cell (24 bytes each, from cache where nodes follow one another in
-// space), 4 to 8 bytes of tables; 24 bytes read or written per displacement; about 60 flops.
+// Cost per node: 24 bytes of coordinates, 8 corners of a cell (24 bytes each, from cache where nodes follow one another
+// in space), 4 to 8 bytes of tables; 24 bytes read or written per displacement; about 60 flops.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -64,7 +64,8 @@ struct AddField {
   }
 };
 
-/// start(n) = u(n) + share field(x_n) + missing_share missing(n) at listed nodes, `start` and `missing` being one array.
+/// start(n) = u(n) + share field(x_n) + missing_share missing(n) at listed nodes, `start` and `missing` being one
+/// array.
 template <class MemorySpace>
 struct StartFromField {
   Kokkos::View<std::int32_t const*, MemorySpace> node;

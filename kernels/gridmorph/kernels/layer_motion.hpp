@@ -2,21 +2,22 @@
 //
 //   u(x) = sum over k of w_k (u_k + G_k (x - x_k)),   G(x) = f sum over k of w_k G_k
 //
-// with k the sources of the row of node x in the layers before (interpolation_rows.hpp), u_k what they are displaced by and G_k = R_k - I how they turn, of
-// which the node keeps a share f. So
-// around a rigid wall every node makes the same rigid motion, and where a wall bends the layers turn as it does. Linear in u and G.
+// with k the sources of the row of node x in the layers before (interpolation_rows.hpp), u_k what they are displaced by
+// and G_k = R_k - I how they turn, of which the node keeps a share f. So around a rigid wall every node makes the same
+// rigid motion, and where a wall bends the layers turn as it does. Linear in u and G.
 //
 // Places: wall nodes, nodes of their columns, then the targets of the rows in their order; rows name places.
 //
-// Cost: per row 20 bytes of tables, 24 of coordinates, 120 written; per item 12 bytes of tables, a motion (96 bytes) and 24 of coordinates, in cache where
-// rows follow one another in space; 42 flops.
+// Cost: per row 20 bytes of tables, 24 of coordinates, 120 written; per item 12 bytes of tables, a motion (96 bytes)
+// and 24 of coordinates, in cache where rows follow one another in space; 42 flops.
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
 
 namespace gridmorph::kernels {
 
-/// motion(place) of walls, as wall_turn.hpp finds it, and of columns: their displacement and a share of their wall's turn.
+/// motion(place) of walls, as wall_turn.hpp finds it, and of columns: their displacement and a share of their wall's
+/// turn.
 template <class MemorySpace>
 struct SeedMotions {
   Kokkos::View<std::int32_t const*, MemorySpace> node, root;  ///< of columns; root: in the list of wall nodes

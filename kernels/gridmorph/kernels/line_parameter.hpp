@@ -23,8 +23,8 @@ struct LineTable {
   Kokkos::View<Segment const*, MemorySpace> segments;
 };
 
-/// Calls visit(position on the line, t) for every node of line (a, b) of a tube, in order; nodes where segments meet are
-/// visited once per segment. x: Field<double const>, or what else has places with a distance() between neighbours.
+/// Calls visit(position on the line, t) for every node of line (a, b) of a tube, in order; nodes where segments meet
+/// are visited once per segment. x: Field<double const>, or what else has places with a distance() between neighbours.
 template <class MemorySpace, class Places, class Visit>
 KOKKOS_INLINE_FUNCTION void walk_line(LineTable<MemorySpace> const& lines, Tube const& tube, int a, int b,
                                       Places const& x, Visit const& visit) {
@@ -55,10 +55,10 @@ KOKKOS_INLINE_FUNCTION void walk_line(LineTable<MemorySpace> const& lines, Tube 
 
 /// All parameters of a set of lines: one item per tile of at most `Width` neighbouring lines of a tube.
 ///
-/// Edges are measured row by row along memory. Where lines run across it, a row is one position of all lines of the tile; where
-/// they run along it, a piece of one line, and their sums follow for four lines at once, since each waits for the one
-/// before. Sums go to where the parameters are kept, and are divided by the lengths of their lines while they are still in
-/// cache.
+/// Edges are measured row by row along memory. Where lines run across it, a row is one position of all lines of the
+/// tile; where they run along it, a piece of one line, and their sums follow for four lines at once, since each waits
+/// for the one before. Sums go to where the parameters are kept, and are divided by the lengths of their lines while
+/// they are still in cache.
 template <class MemorySpace, int Width>
 struct LineParameters {
   LineTable<MemorySpace> lines;
@@ -97,8 +97,8 @@ struct LineParameters {
     static constexpr int lines = Along ? 4 : Width, nodes = Along && Width > 1 ? 128 : 1;
   };
 
-  /// Parameters of n_s nodes from position s of a segment on, of n_a lines from line a of a tile on: that of node (s, a) is kept
-  /// at t.
+  /// Parameters of n_s nodes from position s of a segment on, of n_a lines from line a of a tile on: that of node (s,
+  /// a) is kept at t.
   struct Piece {
     double* t;
     Index stride_s, stride_a;
@@ -124,8 +124,8 @@ struct LineParameters {
     divide<Block>(tile, sum);
   }
 
-  /// Adds the edges that end at the n nodes of a block to the sums of its lines; none ends at the first node of a segment.
-  /// length: of rows along lines, the sums up to each node.
+  /// Adds the edges that end at the n nodes of a block to the sums of its lines; none ends at the first node of a
+  /// segment. length: of rows along lines, the sums up to each node.
   template <class Block>
   KOKKOS_INLINE_FUNCTION void measure_rows(Tile const& tile, Segment const& segment, int begin, int n, double* length,
                                            double* sum) const {
@@ -194,8 +194,8 @@ struct LineParameters {
     }
   }
 
-  /// Calls visit(piece) for the parts of nodes [begin, end) of a segment, on the lines of a tile, whose parameters are wanted:
-  /// ends and sides of the segment by themselves, its inside in one.
+  /// Calls visit(piece) for the parts of nodes [begin, end) of a segment, on the lines of a tile, whose parameters are
+  /// wanted: ends and sides of the segment by themselves, its inside in one.
   template <class Visit>
   KOKKOS_INLINE_FUNCTION void for_pieces(Tile const& tile, Segment const& segment, int begin, int end,
                                          Visit const& visit) const {

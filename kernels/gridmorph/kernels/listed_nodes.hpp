@@ -1,6 +1,7 @@
 // Displacements of listed nodes set, read, copied and added; and those of all nodes written out.
 //
-// Cost per node of a list: 4 to 12 bytes of tables and 24 bytes per displacement read or written, scattered as the list is.
+// Cost per node of a list: 4 to 12 bytes of tables and 24 bytes per displacement read or written, scattered as the list
+// is.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>

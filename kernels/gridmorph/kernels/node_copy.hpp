@@ -68,8 +68,8 @@ void scatter_boundary(Exec const& exec, Kokkos::View<Index const*, typename Exec
   launch("gridmorph::boundary", exec, ScatterBoundary<typename Exec::memory_space>{slots, given, u});
 }
 
-/// Between arrays of the skeleton and of chains; `source` and `destination` may be the same where no copy reads what another
-/// writes.
+/// Between arrays of the skeleton and of chains; `source` and `destination` may be the same where no copy reads what
+/// another writes.
 template <class Exec>
 void copy_nodes(Exec const& exec, char const* label, TileList<NodeCopy, typename Exec::memory_space> const& copies,
                 Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,

@@ -1,4 +1,5 @@
-// Nodes behind periodic boundaries move as one: an owner and its images by the mean over them, in the frame of the owner,
+// Nodes behind periodic boundaries move as one: an owner and its images by the mean over them, in the frame of the
+// owner,
 //
 //   v = (u_0 + sum of R_k^T u_k) / (n + 1),   u_0 = v,   u_k = R_k v
 //

@@ -1,18 +1,21 @@
-// Measures of regular cells, the definitions of cell_quality.hpp for hexahedra without collapsed edges, so that there is
-// nothing to leave out and nothing to branch on. T is double (one cell) or Lanes (as many neighbouring cells of a row).
+// Measures of regular cells, the definitions of cell_quality.hpp for hexahedra without collapsed edges, so that there
+// is nothing to leave out and nothing to branch on. T is double (one cell) or Lanes (as many neighbouring cells of a
+// row).
 //
 //   normals       N = x_eta x x_zeta on a plane of constant xi is bilinear in eta and zeta: cross products at the 4
 //                 corners only, the other 5 of the 9 points by sums. J = x_xi . N.
-//   points        bilinear vectors are kept as sums over corners: 1 x the value at corners, 2 x at edge mids, 4 x at the
+//   points        bilinear vectors are kept as sums over corners: 1 x the value at corners, 2 x at edge mids, 4 x at
+//   the
 //                 centre. Powers of two scale without rounding, so extremes are scaled once and not point by point.
 //   volume        in these sums the weights 1, 4, 1 of Simpson's rule become 1 everywhere: the sum of all 27 / 216.
 //   angles        dot products of unit edge vectors; arc cosines only of the largest and the smallest per cell.
 //
-// A cell that is not regular (a collapsed edge, a corner that is not finite, a Jacobian that is negative or may be round-off)
-// gets a nonzero mark; its other results mean nothing, and the general functions of cell_quality.hpp take over.
+// A cell that is not regular (a collapsed edge, a corner that is not finite, a Jacobian that is negative or may be
+// round-off) gets a nonzero mark; its other results mean nothing, and the general functions of cell_quality.hpp take
+// over.
 //
-// Cost per cell of a row, where neighbours share the planes between them: determinants about 530 flops and 1 division; all
-// measures about 770 flops, 11 square roots, 13 divisions; relative displacement about 190, 9 and 3.
+// Cost per cell of a row, where neighbours share the planes between them: determinants about 530 flops and 1 division;
+// all measures about 770 flops, 11 square roots, 13 divisions; relative displacement about 190, 9 and 3.
 #pragma once
 
 #include <gridmorph/kernels/arc_cosine.hpp>
@@ -159,8 +162,9 @@ struct UnitEdge {
       : square(dot(edge, edge)), unit(1 / square_root(square) * edge) {}
 };
 
-/// Extremes of the cosines of the 4 angles of a face with unit vectors u0, u1 along its edges on the sides 0 and 1 of v,
-/// and v0, v1 on the sides of u. At side 1 of one of them the edge points into the corner, so its cosine has the other sign.
+/// Extremes of the cosines of the 4 angles of a face with unit vectors u0, u1 along its edges on the sides 0 and 1 of
+/// v, and v0, v1 on the sides of u. At side 1 of one of them the edge points into the corner, so its cosine has the
+/// other sign.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION Extremes<T> face_cosines(LaneVec3<T> const& u0, LaneVec3<T> const& u1,
                                                      LaneVec3<T> const& v0, LaneVec3<T> const& v1) {
@@ -168,8 +172,8 @@ KOKKOS_FORCEINLINE_FUNCTION Extremes<T> face_cosines(LaneVec3<T> const& u0, Lane
   return {smaller(smaller(a, b), -larger(c, d)), larger(larger(a, b), -smaller(c, d))};
 }
 
-/// What cells on both sides of a plane of constant i share: unit vectors along its edges, the extremes of the cosines of
-/// the 4 angles between them, and the extremes of the squared lengths.
+/// What cells on both sides of a plane of constant i share: unit vectors along its edges, the extremes of the cosines
+/// of the 4 angles between them, and the extremes of the squared lengths.
 template <class T>
 struct PlaneShape {
   LaneVec3<T> j0, j1, k0, k1;  ///< along j at k = 0, 1; along k at j = 0, 1

@@ -4,14 +4,15 @@
 //
 //   N = |F|^2,   d = det F,   h = (d + sqrt(d^2 + 4 delta^2)) / 2,   f = N^3 / (27 h^2)
 //
-// f is 1 for rigid motions with any uniform scale and grows without bound towards inversion (delta = 0): the inverse mean ratio,
-// cubed, of the baseline's corner as target (Knupp, "Algebraic mesh quality metrics", SIAM J. Sci. Comput. 23 (2001)); delta > 0
-// makes it finite and smooth for inverted corners (Escobar et al., "Simultaneous untangling and smoothing of tetrahedral
-// meshes", Comput. Methods Appl. Mech. Engrg. 192 (2003)).
+// f is 1 for rigid motions with any uniform scale and grows without bound towards inversion (delta = 0): the inverse
+// mean ratio, cubed, of the baseline's corner as target (Knupp, "Algebraic mesh quality metrics", SIAM J. Sci. Comput.
+// 23 (2001)); delta > 0 makes it finite and smooth for inverted corners (Escobar et al., "Simultaneous untangling and
+// smoothing of tetrahedral meshes", Comput. Methods Appl. Mech. Engrg. 192 (2003)).
 //
-// With b_i the rows of E0^-1 and G_ij = b_i . b_j, N = sum G_ij e_i . e_j and d = det E / det E0: six numbers and one of the
-// baseline's corner are enough. A node's move v changes E0^-1-weighted edges by v a^T, where a is b_i for the node at the end of
-// edge i and -(b_0 + b_1 + b_2) for the corner's own node; so N and d change exactly by 2 v.Fa + |a|^2 v^2 and v.cof(F)a.
+// With b_i the rows of E0^-1 and G_ij = b_i . b_j, N = sum G_ij e_i . e_j and d = det E / det E0: six numbers and one
+// of the baseline's corner are enough. A node's move v changes E0^-1-weighted edges by v a^T, where a is b_i for the
+// node at the end of edge i and -(b_0 + b_1 + b_2) for the corner's own node; so N and d change exactly by 2 v.Fa +
+// |a|^2 v^2 and v.cof(F)a.
 //
 // Cost of corner_change: about 90 flops.
 #pragma once
@@ -103,7 +104,8 @@ struct ShapeSum {
     SmoothedVolume const h(c.d, delta);
     double const f = relative_shape(c.n, c.d, delta);
     value += f;
-    // With N' = 2 F a, d' = cof(F) a: f' = f p, f'' = f (p p + 6 |a|^2 / N - 3 N' N' / N^2 + 2 (h'^2 - h h'') / h^2 d' d').
+    // With N' = 2 F a, d' = cof(F) a: f' = f p, f'' = f (p p + 6 |a|^2 / N - 3 N' N' / N^2 + 2 (h'^2 - h h'') / h^2 d'
+    // d').
     Vec3 const along = (2 / c.n) * c.half_slope;
     double const volume = h.slope / h.value;
     Vec3 const p = 3 * along - (2 * volume) * c.volume_slope;
@@ -118,8 +120,8 @@ struct ShapeSum {
   }
 };
 
-/// The step of Newton's method where the Hessian is positive definite (3x3, by its Cholesky factors), otherwise against the
-/// gradient, as long as the Hessian's size says; zero where there is neither.
+/// The step of Newton's method where the Hessian is positive definite (3x3, by its Cholesky factors), otherwise against
+/// the gradient, as long as the Hessian's size says; zero where there is neither.
 KOKKOS_INLINE_FUNCTION Vec3 descent_step(ShapeSum const& sum) {
   using std::sqrt;
   double const(&h)[3][3] = sum.hessian;
@@ -145,7 +147,8 @@ KOKKOS_INLINE_FUNCTION Vec3 descent_step(ShapeSum const& sum) {
   return (-1 / size) * g;
 }
 
-/// Gradient and Hessian without what points across `count` directions (unit, at right angles), along which a step is zero.
+/// Gradient and Hessian without what points across `count` directions (unit, at right angles), along which a step is
+/// zero.
 KOKKOS_INLINE_FUNCTION void restrict_to_tangents(ShapeSum& sum, Vec3 const* across, int count) {
   double const trace = sum.hessian[0][0] + sum.hessian[1][1] + sum.hessian[2][2];
   double const size = trace > 0 ? trace : 1;

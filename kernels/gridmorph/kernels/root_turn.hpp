@@ -1,22 +1,27 @@
-// How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands on.
+// How the near field of a wall of blocks turns, line by line. A root is the slot that a line of the near field stands
+// on.
 //
 //   free    the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
-//             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of one side
-//   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn some nodes of a body
+//             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of
+//             one side
+//   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn
+//   some nodes of a body
 //             that is deformed besides turn by 179 degrees and some by 181
-//             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of its height above
-//             each of the faces, as far as it would keep it without a turn; as far as free where the wall turns beyond 150 degrees
+//             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of
+//             its height above each of the faces, as far as it would keep it without a turn; as far as free where the
+//             wall turns beyond 150 degrees
 //   inner   raw, corrected towards end walls so that lines that stand beside one stay on it:
 //             (sum over its ends of (1 - c1(h / H)) alpha) raw
-//           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there before
-//           and after; onto a wall that a rule moves its own rotation after raw's inverse
-//   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N mixed by span
+//           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there
+//           before and after; onto a wall that a rule moves its own rotation after raw's inverse
+//   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N
+//   mixed by span
 //           fraction: the outer edge turns about the spanwise direction alone
 //
 // From raw on all keeps the way round that raw goes (turn_on()).
 //
-// written for V = Vec3, or V = DualVec3 for exact rates of all but the curvature of slip surfaces, which is a difference.
-// Cost: surfaces; per root about 500 flops and its neighbours read from cache.
+// written for V = Vec3, or V = DualVec3 for exact rates of all but the curvature of slip surfaces, which is a
+// difference. Cost: surfaces; per root about 500 flops and its neighbours read from cache.
 #pragma once
 
 #include <gridmorph/kernels/body_turn.hpp>

@@ -2,17 +2,18 @@
 //
 //   r = k tan(a / 4)
 //
-// (modified Rodrigues parameters; H. Schaub, J. L. Junkins, J. Astronaut. Sci. 44 (1996) 1): zero for none, of length one for
-// half a turn, which is one rotation with r and -r, and smooth between. -r / |r|^2 is the same rotation, a - 360 degrees the other way
-// round: formulas give the shorter of the two, and where a body turns by about half a turn its rotations are all taken the way round
-// that is nearer to their mean (way_near()), up to 240 degrees. So what lies between them and no rotation goes one way round the body.
-// For small angles r is a quarter of axis times angle; a share f of it is f r, whose angle is f a to 2 degrees up to a right
-// angle, to 16 up to half a turn. By square roots and quotients, which every machine rounds alike.
+// (modified Rodrigues parameters; H. Schaub, J. L. Junkins, J. Astronaut. Sci. 44 (1996) 1): zero for none, of length
+// one for half a turn, which is one rotation with r and -r, and smooth between. -r / |r|^2 is the same rotation, a -
+// 360 degrees the other way round: formulas give the shorter of the two, and where a body turns by about half a turn
+// its rotations are all taken the way round that is nearer to their mean (way_near()), up to 240 degrees. So what lies
+// between them and no rotation goes one way round the body. For small angles r is a quarter of axis times angle; a
+// share f of it is f r, whose angle is f a to 2 degrees up to a right angle, to 16 up to half a turn. By square roots
+// and quotients, which every machine rounds alike.
 //
 //   R y - y = (4 (1 - r.r) r x y + 8 r x (r x y)) / (1 + r.r)^2
 //
-// as a unit quaternion (cos(a / 2), k sin(a / 2)) = (1 - r.r, 2 r) / (1 + r.r). All formulas are written for V = Vec3, or
-// V = DualVec3 for their exact rates (dual.hpp), also where nothing turns yet.
+// as a unit quaternion (cos(a / 2), k sin(a / 2)) = (1 - r.r, 2 r) / (1 + r.r). All formulas are written for V = Vec3,
+// or V = DualVec3 for their exact rates (dual.hpp), also where nothing turns yet.
 #pragma once
 
 #include <gridmorph/kernels/dual.hpp>
@@ -33,8 +34,8 @@ KOKKOS_INLINE_FUNCTION Vec3 across(Vec3 const& v) {
   return (1 / norm(c)) * c;
 }
 
-/// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the same; about
-/// `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
+/// The smallest rotation that takes direction `before` to `after`; zero where either is zero and where they are the
+/// same; about `half_turn_axis` (unit, across them), with no rate, where they are opposite to round-off.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after, Vec3 const& half_turn_axis) {
   using std::sqrt;
@@ -90,8 +91,8 @@ KOKKOS_INLINE_FUNCTION V other_way(V const& r) {
 /// |r|^2 of 120 degrees: rotations beyond that may go the longer way round.
 inline constexpr double longer_ways = 1.0 / 3;
 
-/// Rotation r the way round that is nearer to rotation `to`, if it is beyond 120 degrees: by the sign of the product of their quaternions.
-/// As it is where neither is nearer, whatever round-off says.
+/// Rotation r the way round that is nearer to rotation `to`, if it is beyond 120 degrees: by the sign of the product of
+/// their quaternions. As it is where neither is nearer, whatever round-off says.
 template <class V>
 KOKKOS_INLINE_FUNCTION V way_near(V const& r, Vec3 const& to) {
   Vec3 const v = value_of(r);
@@ -99,8 +100,8 @@ KOKKOS_INLINE_FUNCTION V way_near(V const& r, Vec3 const& to) {
   return a > longer_ways && (1 - a) * (1 - b) + 4 * dot(v, to) < -1e-5 ? other_way(r) : r;
 }
 
-/// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the direction along
-/// which z, else y, else x rises.
+/// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the
+/// direction along which z, else y, else x rises.
 template <class V>
 KOKKOS_INLINE_FUNCTION V settled(V const& r) {
   auto const square = dot(r, r);
@@ -152,7 +153,8 @@ KOKKOS_INLINE_FUNCTION V turn_on(V const& first, V const& correction) {
   return product.rotation();
 }
 
-/// A quaternion whose size does not matter; `less` is what its real part is less than one, exactly zero for no rotation.
+/// A quaternion whose size does not matter; `less` is what its real part is less than one, exactly zero for no
+/// rotation.
 template <class V>
 struct Quaternion {
   using Scalar = std::decay_t<decltype(dot(V{}, V{}))>;

@@ -1,4 +1,5 @@
-// Gradients through the formulas of rotations (rotation.hpp): of quaternions and of rotations, from those of what they turn.
+// Gradients through the formulas of rotations (rotation.hpp): of quaternions and of rotations, from those of what they
+// turn.
 //
 // Of what the quaternion q = (r, v), r = 1 - l, turns an arm y by, with the gradient g of it: N = r^2 + v.v, k = 2 / N,
 //

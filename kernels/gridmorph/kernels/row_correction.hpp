@@ -1,13 +1,13 @@
 // The transfinite correction (side_correction.hpp) for a row of nodes inside a chain at once.
 //
 // Along a row most side lines and all four edges stay the same, and where the row runs across the chain, so does the
-// fraction t at which they are read, nearly: between two nodes of the side line, or on both sides of one. Then the residual is
-// one or two linear functions of t, the row needs two searches per line instead of two per node, and the loop over its
-// nodes has neither branches nor indices.
+// fraction t at which they are read, nearly: between two nodes of the side line, or on both sides of one. Then the
+// residual is one or two linear functions of t, the row needs two searches per line instead of two per node, and the
+// loop over its nodes has neither branches nor indices.
 //
-// Cost per node of a row across the chain: about 10 flops per line that stays, a lookup per line that does not (none where only
-// opposite sides are known and the row runs from one to the other, two otherwise); of a row along the chain: a lookup per
-// line, next to the one before.
+// Cost per node of a row across the chain: about 10 flops per line that stays, a lookup per line that does not (none
+// where only opposite sides are known and the row runs from one to the other, two otherwise); of a row along the chain:
+// a lookup per line, next to the one before.
 #pragma once
 
 #include <gridmorph/kernels/side_correction.hpp>
@@ -19,8 +19,8 @@ struct VectorRow {
   double x[width], y[width], z[width];
 };
 
-/// Nodes w = 0 ... n - 1 at (s + w ds, a + w da, b + w db) of a chain and fractions t[w] of their lines; none of them on a
-/// side of the chain.
+/// Nodes w = 0 ... n - 1 at (s + w ds, a + w da, b + w db) of a chain and fractions t[w] of their lines; none of them
+/// on a side of the chain.
 template <class MemorySpace, int width>
 struct RowCorrection {
   SideTable<MemorySpace> const& table;

@@ -9,16 +9,17 @@
 //
 //   c(s,a,b) = (1-A) c0' + A c1' + (1-B) c2' + B c3' + (1-A)(1-B) e00 + A(1-B) e10 + (1-A)B e01 + AB e11
 //
-// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends, and c' the
-// residual of a side beyond what its two edges give it, c' = c - (1-f) e_lower - f e_upper with f the fraction across that
-// side. Where only opposite sides are known beyond their edges, this is their linear blend, c = (1-A) c0 + A c1.
+// with A, B the arc-length fractions across the chain, interpolated linearly along the line between its two ends, and
+// c' the residual of a side beyond what its two edges give it, c' = c - (1-f) e_lower - f e_upper with f the fraction
+// across that side. Where only opposite sides are known beyond their edges, this is their linear blend, c = (1-A) c0 +
+// A c1.
 //
 // All values on the right are taken where the side lines and edges have the same fraction of *their* length as node
-// (s, a, b) has of its line. (Not the same index: where a side is spaced evenly and the lines beside it are clustered at a
-// wall, its residual would be pushed between the wall's first nodes.)
+// (s, a, b) has of its line. (Not the same index: where a side is spaced evenly and the lines beside it are clustered
+// at a wall, its residual would be pushed between the wall's first nodes.)
 //
-// What is unknown on an edge is filled linearly between the nearest known nodes (zero at the ends of the chain), what is
-// unknown on a side by the same Boolean sum from its borders. With all residuals zero this is the plain sweep.
+// What is unknown on an edge is filled linearly between the nearest known nodes (zero at the ends of the chain), what
+// is unknown on a side by the same Boolean sum from its borders. With all residuals zero this is the plain sweep.
 //
 // Cost per node: one or two lookups in a side table where opposite sides are known, eight at most; each reads two
 // parameters and two residuals, from cache. Volumes take whole rows at once (row_correction.hpp).

@@ -97,9 +97,8 @@ struct EdgeFill {
   }
 };
 
-/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then c' = c -
-/// edges where the correction asks for that.
-/// One item per side line; nothing is done on edges.
+/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then c' = c
+/// - edges where the correction asks for that. One item per side line; nothing is done on edges.
 template <class MemorySpace>
 struct SideFill {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -145,8 +144,8 @@ struct SideFill {
     for (int p = 0; p < chain.n_s; ++p) c.set(line + p, c[line + p] - between_edges(p, fraction_across(p)));
   }
 };
-/// Sides of the chains in `corrected`. c comes in as the displacements of the known nodes, in the chain's frame; it is the array
-/// that `sides` reads.
+/// Sides of the chains in `corrected`. c comes in as the displacements of the known nodes, in the chain's frame; it is
+/// the array that `sides` reads.
 template <class Exec>
 void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                 SideTable<typename Exec::memory_space> const& sides,

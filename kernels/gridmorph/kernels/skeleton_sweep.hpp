@@ -1,11 +1,12 @@
-// Displacement along grid lines from the values at their ends, on the skeleton: the faces, edges and corners of all pieces.
+// Displacement along grid lines from the values at their ends, on the skeleton: the faces, edges and corners of all
+// pieces.
 //
 //   u(s) = u0 + w(t) (u1 - u0) + c(s, a, b)
 //
-// (paper, section 3: "one simply interpolates along the grid line using a chosen distribution law, the simplest one being
-// linear interpolation by grid line length"), t from line_parameter.hpp, c the transfinite correction of
-// side_correction.hpp; it is absent where no side of the chain is known. Stages depend on one another through the skeleton
-// alone, so it goes through the stages first and the volume follows in one pass (volume_pass.hpp).
+// (paper, section 3: "one simply interpolates along the grid line using a chosen distribution law, the simplest one
+// being linear interpolation by grid line length"), t from line_parameter.hpp, c the transfinite correction of
+// side_correction.hpp; it is absent where no side of the chain is known. Stages depend on one another through the
+// skeleton alone, so it goes through the stages first and the volume follows in one pass (volume_pass.hpp).
 //
 // Where the ends of a chain turn, what turned_line.hpp says is added.
 //
@@ -88,7 +89,8 @@ struct SweepSkeleton {
     }
   }
 };
-/// u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line parameters.
+/// u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line
+/// parameters.
 template <bool Add, class Exec>
 void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::memory_space> const& sweeps,
                     Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,

@@ -1,4 +1,5 @@
-// What all surfaces that a node slides on ask of its displacement, and sliding along the edge where several of them meet.
+// What all surfaces that a node slides on ask of its displacement, and sliding along the edge where several of them
+// meet.
 #pragma once
 
 #include <gridmorph/kernels/slip_surface.hpp>
@@ -11,10 +12,11 @@ struct AcrossEdge {
   int count = 0;
 };
 
-/// Corrects the displacement u of a baseline node until the node is where all of `count` surfaces want it, by Gauss-Newton steps: each
-/// the shortest that brings it onto the tangent planes of all surfaces at once. Quadratic convergence, whatever the angle; putting
-/// the node on one surface after the other gains a factor cos^2 of the angle per round. Surfaces that meet at less than 0.01 rad
-/// count as one. `surface(m)` is a SlipSurfaceView, `own(m)` the node's own offset from it.
+/// Corrects the displacement u of a baseline node until the node is where all of `count` surfaces want it, by
+/// Gauss-Newton steps: each the shortest that brings it onto the tangent planes of all surfaces at once. Quadratic
+/// convergence, whatever the angle; putting the node on one surface after the other gains a factor cos^2 of the angle
+/// per round. Surfaces that meet at less than 0.01 rad count as one. `surface(m)` is a SlipSurfaceView, `own(m)` the
+/// node's own offset from it.
 template <class Surfaces, class Offsets>
 KOKKOS_INLINE_FUNCTION AcrossEdge slide_along_edge(int count, Surfaces const& surface, Offsets const& own,
                                                    Vec3 const& baseline, Vec3& u) {
@@ -42,21 +44,22 @@ KOKKOS_INLINE_FUNCTION AcrossEdge slide_along_edge(int count, Surfaces const& su
   }
 }
 
-/// The displacement u of a baseline node, corrected for all of its `count` surfaces; with `Rate` also its rate of change.
-/// surface(m), own(m): as above.
+/// The displacement u of a baseline node, corrected for all of its `count` surfaces; with `Rate` also its rate of
+/// change. surface(m), own(m): as above.
 ///
-/// Surfaces are applied in turn; planes at right angles, and surfaces of revolution with planes across or along their axis,
-/// are exact after one round. Where that does not settle in three rounds the node slides along their common edge. The rate
-/// after that is the one before without its components across the edge: exact but for the curvature of the surfaces over the
-/// length of the steps. A displacement that all surfaces leave as it is has a rate that they do not: it goes through the same rounds,
-/// and along the edge.
+/// Surfaces are applied in turn; planes at right angles, and surfaces of revolution with planes across or along their
+/// axis, are exact after one round. Where that does not settle in three rounds the node slides along their common edge.
+/// The rate after that is the one before without its components across the edge: exact but for the curvature of the
+/// surfaces over the length of the steps. A displacement that all surfaces leave as it is has a rate that they do not:
+/// it goes through the same rounds, and along the edge.
 template <bool Rate, class Surfaces, class Offsets>
 KOKKOS_INLINE_FUNCTION void constrain_to_all(int count, Surfaces const& surface, Offsets const& own,
                                              Vec3 const& baseline, Vec3& u, Vec3& rate) {
   constexpr int max_rounds = 3;
   bool settled = false;
   for (int round = 0; round < (count > 1 ? max_rounds : 1); ++round) {
-    // Each surface has to leave u as it is: two that put the node back along one line undo each other's step, round by round.
+    // Each surface has to leave u as it is: two that put the node back along one line undo each other's step, round by
+    // round.
     settled = true;
     for (int m = 0; m < count; ++m) {
       Vec3 const before = u;

@@ -16,8 +16,8 @@ struct SlipEnd {
   std::int32_t to_node;   ///< frame of the slot -> frame of the node, -1: the same
   std::int32_t to_chain;  ///< frame of the node -> chain frame
   std::int32_t surface[3];
-  /// Nodes with a given displacement are left alone this near to their surfaces. Rates know nothing of it: what leads off a
-  /// surface does not last longer than the way to here.
+  /// Nodes with a given displacement are left alone this near to their surfaces. Rates know nothing of it: what leads
+  /// off a surface does not last longer than the way to here.
   double tolerance;
 };
 
@@ -51,8 +51,8 @@ struct ClearEnds {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { values.set(n, {}); }
 };
 
-/// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate` per
-/// unit of time: constrain_to_all() of slip_edge.hpp.
+/// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate`
+/// per unit of time: constrain_to_all() of slip_edge.hpp.
 template <class MemorySpace, bool Rate>
 struct SlipEndValues {
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
@@ -113,8 +113,8 @@ void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename 
          SlipEndBaselines<typename Exec::memory_space>{ends, surfaces, x, baselines});
 }
 
-/// End values first_value, ..., first_value + n_values - 1 of a pass: zero where its lines do not slide, `kernel` for the
-/// others.
+/// End values first_value, ..., first_value + n_values - 1 of a pass: zero where its lines do not slide, `kernel` for
+/// the others.
 template <class Exec, bool Rate>
 void slip_ends(Exec const& exec, Index first_value, Index n_values,
                SlipEndValues<typename Exec::memory_space, Rate> const& kernel) {

@@ -1,7 +1,8 @@
-// What boundaries beyond the moving walls ask of their nodes: the displacement of a rule, or of the nodes themselves as the
-// surfaces that they slide on let it be (slip_edge.hpp).
+// What boundaries beyond the moving walls ask of their nodes: the displacement of a rule, or of the nodes themselves as
+// the surfaces that they slide on let it be (slip_edge.hpp).
 //
-// Cost per node: 12 bytes of tables, 24 of coordinates, 24 read and 24 written; a node that slides as slip_surface.hpp says.
+// Cost per node: 12 bytes of tables, 24 of coordinates, 24 read and 24 written; a node that slides as slip_surface.hpp
+// says.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>

@@ -5,8 +5,8 @@
 // exactly zero, and a displacement that already keeps the node on its surface comes back bit for bit.
 //
 // Cost: plane and axial about 10 flops; revolution two lookups in the profile and two square roots; meridional the same
-// across the axis, otherwise some six lookups with derivatives to find the nearest point: eight times revolution; facets a
-// search in O(log facets) and about 2000 flops (facet_surface.hpp).
+// across the axis, otherwise some six lookups with derivatives to find the nearest point: eight times revolution;
+// facets a search in O(log facets) and about 2000 flops (facet_surface.hpp).
 #pragma once
 
 #include <gridmorph/kernels/facet_surface.hpp>
@@ -24,10 +24,10 @@ enum class SlipKind {
   facets       ///< nodes stay on a discrete surface made smooth, moved along its normals
 };
 
-/// A frame of the meridional plane: (abscissa, ordinate) is (axial, radius) turned. Walls at constant axial position are
-/// functions of the abscissa when it is the radius (cosine 0, sine 1), walls that turn from axial to radial in a frame
-/// between the two. Nodes move along the ordinate to a wall across the axis (at constant radius and angle), and along the
-/// wall's normal in the meridional plane where the frame is inclined.
+/// A frame of the meridional plane: (abscissa, ordinate) is (axial, radius) turned. Walls at constant axial position
+/// are functions of the abscissa when it is the radius (cosine 0, sine 1), walls that turn from axial to radial in a
+/// frame between the two. Nodes move along the ordinate to a wall across the axis (at constant radius and angle), and
+/// along the wall's normal in the meridional plane where the frame is inclined.
 struct MeridionalFrame {
   double cosine = 1, sine = 0;
   KOKKOS_INLINE_FUNCTION double abscissa(double axial, double radius) const { return cosine * axial + sine * radius; }
@@ -43,7 +43,8 @@ struct ProfileKnot {
   double axial = 0;
   double radius = 0;
   double slope = 0;  ///< d radius / d axial
-  /// Second derivatives at the two ends of the piece that begins here; across a knot where the profile has a kink they differ.
+  /// Second derivatives at the two ends of the piece that begins here; across a knot where the profile has a kink they
+  /// differ.
   double curvature[2] = {0, 0};
   friend bool operator==(ProfileKnot const&, ProfileKnot const&) = default;
 };
@@ -53,8 +54,8 @@ struct ProfileSample {
   double value = 0, slope = 0, bend = 0;
 };
 
-/// Radius as a function of axial position (in a turned frame: ordinate as a function of abscissa): quintic Hermite pieces
-/// between `size` knots. Borrows its tables.
+/// Radius as a function of axial position (in a turned frame: ordinate as a function of abscissa): quintic Hermite
+/// pieces between `size` knots. Borrows its tables.
 struct ProfileView {
   ProfileKnot const* knots = nullptr;  ///< (size), axial positions strictly increasing
   int size = 0;
@@ -131,8 +132,8 @@ struct ProfileView {
             (rise / h * 60 * t * (1 + t * (-3 + 2 * t)) + slopes[2]) / h + bends[2]};
   }
 
-  /// Abscissa of the profile's point nearest to (x, y), by Newton's method from the point at x; where the distance is not
-  /// convex there, steps of Gauss and Newton. Meant for points nearer to the profile than its radius of curvature.
+  /// Abscissa of the profile's point nearest to (x, y), by Newton's method from the point at x; where the distance is
+  /// not convex there, steps of Gauss and Newton. Meant for points nearer to the profile than its radius of curvature.
   KOKKOS_INLINE_FUNCTION double nearest(double x, double y) const {
     constexpr int most_steps = 30;
     double const length = knots[size - 1].axial - knots[0].axial;
@@ -165,10 +166,9 @@ struct SlipSurfaceView {
   MeridionalFrame frame{};        ///< meridional only
   FacetSurfaceView facets{};      ///< facets only
 
-  /// The point of the surface that p slides to: orthogonally (plane), along the normals (facets), radially at constant axial
-  /// position and angle (revolution), or as MeridionalFrame says. A point on the axis has no radial direction: it stays, or
-  /// goes along the axis to a wall across it.
-  /// Kind axial: p itself.
+  /// The point of the surface that p slides to: orthogonally (plane), along the normals (facets), radially at constant
+  /// axial position and angle (revolution), or as MeridionalFrame says. A point on the axis has no radial direction: it
+  /// stays, or goes along the axis to a wall across it. Kind axial: p itself.
   KOKKOS_INLINE_FUNCTION Vec3 project(Vec3 const& p) const {
     if (kind == SlipKind::facets) return facets.slide(facets.closest_point(p), p);
     Vec3 const d = p - origin;
@@ -189,8 +189,8 @@ struct SlipSurfaceView {
     return p + ((profile(a) - r) / r) * radial;
   }
 
-  /// Distance of a baseline node from a surface of revolution or of facets that is the baseline mesh's own and is kept; 0
-  /// for other kinds and for nodes that are farther off.
+  /// Distance of a baseline node from a surface of revolution or of facets that is the baseline mesh's own and is kept;
+  /// 0 for other kinds and for nodes that are farther off.
   KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
     if (kind == SlipKind::facets) {
       FacetFoot const foot = facets.closest_point(baseline);
@@ -243,8 +243,9 @@ struct SlipSurfaceView {
     return small(excess, tolerance) ? u : u - (excess / r) * moved;
   }
 
-  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time. Facets: the derivative of the foot,
-  /// without the change of the normal along which `own` is kept; beyond a rim, the part of `rate` in its tangent plane.
+  /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time. Facets: the derivative of the
+  /// foot, without the change of the normal along which `own` is kept; beyond a rim, the part of `rate` in its tangent
+  /// plane.
   KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
     if (kind == SlipKind::facets) return facets.foot_rate(facets.closest_point(baseline + u), baseline + u, rate);
     double const axial_rate = dot(rate, direction);
@@ -310,7 +311,8 @@ struct SlipSurfaceView {
 
  private:
   /// Derivative of the correction that constrain() subtracts. Along the profile's normal n with tangent t, of a point q
-  /// whose foot moves at t . q' / (1 - curvature away): away' = n . q', n' = -curvature t (t . q') / (1 - curvature away).
+  /// whose foot moves at t . q' / (1 - curvature away): away' = n . q', n' = -curvature t (t . q') / (1 - curvature
+  /// away).
   KOKKOS_INLINE_FUNCTION Vec3 meridional_rate(double axial, Vec3 const& moved, double axial_rate,
                                               Vec3 const& moved_rate, double r_rate, double own) const {
     using std::sqrt;

@@ -1,7 +1,8 @@
 // Eigenvalues and eigenvectors of small symmetric matrices.
 //
-// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, section 8.5). Entries off the diagonal that are exactly zero
-// stay so: points on a coordinate plane have its exact normal, and what moves by nothing is turned by nothing.
+// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, section 8.5). Entries off the diagonal that are
+// exactly zero stay so: points on a coordinate plane have its exact normal, and what moves by nothing is turned by
+// nothing.
 //
 // Cost: 5 sweeps or so of N (N - 1) / 2 rotations.
 #pragma once

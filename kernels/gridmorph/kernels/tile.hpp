@@ -1,7 +1,7 @@
 // How much one work item does: the only place where kernels for CPUs and for GPUs differ.
 //
-// On a CPU an item is a run or a tile of neighbouring nodes, long enough for vector instructions and small enough for the
-// second-level cache; on a GPU it is one node (or one grid line), and neighbouring items touch neighbouring memory.
+// On a CPU an item is a run or a tile of neighbouring nodes, long enough for vector instructions and small enough for
+// the second-level cache; on a GPU it is one node (or one grid line), and neighbouring items touch neighbouring memory.
 #pragma once
 
 #include <gridmorph/kernels/grid_line.hpp>
@@ -22,8 +22,8 @@ struct TileShape {
   static constexpr int volume_k = host ? 32 : 1;
 };
 
-/// A number that the compiler knows where a variable may stand too. (The conversion of std::integral_constant is a function
-/// for the host alone.)
+/// A number that the compiler knows where a variable may stand too. (The conversion of std::integral_constant is a
+/// function for the host alone.)
 template <int N>
 struct Constant {
   KOKKOS_INLINE_FUNCTION constexpr operator int() const { return N; }

@@ -1,4 +1,5 @@
-// What the nodes inside pieces of blocks hand to the motion in common: the moments of their gradients at x + v (common_motion.hpp).
+// What the nodes inside pieces of blocks hand to the motion in common: the moments of their gradients at x + v
+// (common_motion.hpp).
 //
 // One item per plane of nodes of a box, so that sums come in one order whatever the number of threads.
 //

@@ -1,6 +1,7 @@
 // Gradients of copies, handed back to what they were copied from: the transposes of node_copy.hpp and slip_end.hpp.
 //
-// Cost: 24 bytes read per copy with 12 of tables, 24 written per source; per slip end 48 bytes, 144 of tables, and its surface once.
+// Cost: 24 bytes read per copy with 12 of tables, 24 written per source; per slip end 48 bytes, 144 of tables, and its
+// surface once.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>

@@ -1,18 +1,19 @@
-// Transposed grid lines: the gradient of what lies on a line, added up at its two ends. With J any function of the displacements and
-// g = dJ/du of the nodes of a line,
+// Transposed grid lines: the gradient of what lies on a line, added up at its two ends. With J any function of the
+// displacements and g = dJ/du of the nodes of a line,
 //
 //   dJ/du0 = sum of (1 - w(t)) g,   dJ/du1 = sum of w(t) g
 //
-// and likewise for rotations at its ends (turned_line.hpp), linearised where the ends are: the transpose of skeleton_sweep.hpp and
-// volume_pass.hpp without their correction (transposed_sides.hpp).
+// and likewise for rotations at its ends (turned_line.hpp), linearised where the ends are: the transpose of
+// skeleton_sweep.hpp and volume_pass.hpp without their correction (transposed_sides.hpp).
 //
-// Nodes of a chain are listed as bundles: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group is a rectangle
-// (a, b) of lines that run through the same bundles, so that one work item has its lines to itself: sums come in one order whatever the
-// number of threads. On the host nodes are taken in rows that vector instructions work on: those of neighbouring lines, or, where memory
-// runs along the lines, those of one line after the other, in sixteen sums that are added up at its end.
+// Nodes of a chain are listed as bundles: boxes (s, a, b) of slots of the skeleton or of nodes inside a piece. A group
+// is a rectangle (a, b) of lines that run through the same bundles, so that one work item has its lines to itself: sums
+// come in one order whatever the number of threads. On the host nodes are taken in rows that vector instructions work
+// on: those of neighbouring lines, or, where memory runs along the lines, those of one line after the other, in sixteen
+// sums that are added up at its end.
 //
-// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more, about 90
-// flops per end that turns. Nothing is written but at the ends.
+// Cost per node and chain through it: 24 bytes of gradient and 8 of line parameter read; where the chain turns 24 more,
+// about 90 flops per end that turns. Nothing is written but at the ends.
 #pragma once
 
 #include <gridmorph/kernels/common_rows.hpp>
@@ -83,7 +84,8 @@ struct BundleGradients {
     return p.t < 0 ? 0 : t[at(p.t, p.t_step, s, a, b)];
   }
 
-  /// The gradients of a row of n nodes from (s, a, b) on; below: where they are, their parameters, the gradients of the rotations of slots.
+  /// The gradients of a row of n nodes from (s, a, b) on; below: where they are, their parameters, the gradients of the
+  /// rotations of slots.
   template <RowAlong along, int width>
   KOKKOS_INLINE_FUNCTION void row(LineBundle const& p, int s, int a, int b, int n, VectorRow<width>& g) const {
     Index const first = at(p.value, p.value_step, s, a, b), step = row_step<along>(p.value_step);

@@ -1,5 +1,5 @@
-// Transposes of what is done to listed nodes of elements: listed_nodes.hpp, slip_nodes.hpp, periodic_mean.hpp. Gradients take the places of
-// displacements; what was written over ends at zero. Costs as forwards.
+// Transposes of what is done to listed nodes of elements: listed_nodes.hpp, slip_nodes.hpp, periodic_mean.hpp.
+// Gradients take the places of displacements; what was written over ends at zero. Costs as forwards.
 #pragma once
 
 #include <gridmorph/kernels/listed_nodes.hpp>
@@ -121,7 +121,8 @@ struct FieldAndMissingBack {
     u[n] = {};
   }
 };
-/// Transpose of FieldMisses at nodes whose value stays with them: u(n) += left(n), read(n) = -left(n); left ends at zero.
+/// Transpose of FieldMisses at nodes whose value stays with them: u(n) += left(n), read(n) = -left(n); left ends at
+/// zero.
 template <class MemorySpace>
 struct FieldMissesBack {
   Kokkos::View<std::int32_t const*, MemorySpace> node;

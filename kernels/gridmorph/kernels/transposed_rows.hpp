@@ -1,10 +1,13 @@
-// Transposes of weighted means: rows of interpolation operators (interpolation_rows.hpp), layers of them (layer_motion.hpp too), smooth
-// fields between boundary values (inverse_distance.hpp) and what nodes read of a lattice (lattice_field.hpp).
+// Transposes of weighted means: rows of interpolation operators (interpolation_rows.hpp), layers of them
+// (layer_motion.hpp too), smooth fields between boundary values (inverse_distance.hpp) and what nodes read of a lattice
+// (lattice_field.hpp).
 //
-// Each source gathers from the rows that name it; where rows come in layers, sources do so from the last layer to the first, and
-// gradients of rows are complete when they are read. So every gradient is written by one work item and sums come in one order.
+// Each source gathers from the rows that name it; where rows come in layers, sources do so from the last layer to the
+// first, and gradients of rows are complete when they are read. So every gradient is written by one work item and sums
+// come in one order.
 //
-// Cost: as forwards, with 12 bytes of tables per item. Lattices: 28 bytes read per node that reads one, 192 written per chunk of them.
+// Cost: as forwards, with 12 bytes of tables per item. Lattices: 28 bytes read per node that reads one, 192 written per
+// chunk of them.
 #pragma once
 
 #include <gridmorph/kernels/inverse_distance.hpp>
@@ -198,7 +201,8 @@ void gather_readers(Exec const& exec, LatticeReaders<typename Exec::memory_space
          LatticeSums<Memory>{readers, parts, value});
 }
 
-/// Transpose of PassMotions, by places: each gathers from the rows that name it. Sources in layers as in TransposedLayers.
+/// Transpose of PassMotions, by places: each gathers from the rows that name it. Sources in layers as in
+/// TransposedLayers.
 template <class MemorySpace>
 struct PassMotionsBack {
   TransposedRows<MemorySpace> rows;                     ///< of places

@@ -1,16 +1,18 @@
-// Transpose of what a guard moved nodes by (frozen_shifts.hpp): gradients of nodes, to those of the boundary's displacement
+// Transpose of what a guard moved nodes by (frozen_shifts.hpp): gradients of nodes, to those of the boundary's
+// displacement
 //
 //   dJ/da_d = sum over nodes of s_d . g,    dJ/du(b) += sum over d of dJ/da_d g_d(b)
 //
-// and where nodes slide also to the slots of the skeleton that they start from. Sums by chunks, in one order. Costs as forwards, with three
-// rates of the surfaces per node that slides.
+// and where nodes slide also to the slots of the skeleton that they start from. Sums by chunks, in one order. Costs as
+// forwards, with three rates of the surfaces per node that slides.
 #pragma once
 
 #include <gridmorph/kernels/frozen_shifts.hpp>
 
 namespace gridmorph::kernels {
 
-/// Of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their slot, in its own.
+/// Of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their slot, in its
+/// own.
 template <class MemorySpace>
 struct SlidingShiftsBack {
   AddSlidingShifts<MemorySpace, true> forwards;

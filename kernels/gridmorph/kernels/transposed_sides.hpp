@@ -1,11 +1,11 @@
 // Transpose of the correction of line sweeps: side_correction.hpp, and the residuals of side_residual.hpp in reverse.
 //
-// What side line w of a side gives to the chain is read by the nodes (s, a, w) or (s, w, b) of one slab of it, so one work item has the
-// slab and the line to itself. The four edges are read by all nodes of the chain: each slab across b adds up its own part, and the parts
-// are added up after. Sums come in one order whatever the number of threads.
+// What side line w of a side gives to the chain is read by the nodes (s, a, w) or (s, w, b) of one slab of it, so one
+// work item has the slab and the line to itself. The four edges are read by all nodes of the chain: each slab across b
+// adds up its own part, and the parts are added up after. Sums come in one order whatever the number of threads.
 //
-// Cost per node of a chain whose sides are known: 32 bytes read and one or two lookups in a side table for each of the two directions
-// across that its correction blends; nothing is written but on sides.
+// Cost per node of a chain whose sides are known: 32 bytes read and one or two lookups in a side table for each of the
+// two directions across that its correction blends; nothing is written but on sides.
 #pragma once
 
 #include <gridmorph/kernels/side_residual.hpp>
@@ -123,8 +123,8 @@ struct EdgeSums {
   }
 };
 
-/// Transpose of SideFill along each side line: gradients of known nodes and junctions in c, those of what lies between the side's two
-/// edges in `between`. One item per side line; nothing is done on edges.
+/// Transpose of SideFill along each side line: gradients of known nodes and junctions in c, those of what lies between
+/// the side's two edges in `between`. One item per side line; nothing is done on edges.
 template <class MemorySpace>
 struct SideFillBack {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -197,7 +197,8 @@ struct SideEdgesBack {
   }
 };
 
-/// Transpose of EdgeFill: of the known nodes of the four edges along s, in sides 0 and 1; their copies in sides 2 and 3 end at zero.
+/// Transpose of EdgeFill: of the known nodes of the four edges along s, in sides 0 and 1; their copies in sides 2 and 3
+/// end at zero.
 template <class MemorySpace>
 struct EdgeFillBack {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -238,8 +239,8 @@ struct EdgeFillBack {
   }
 };
 
-/// Transpose of SideResidual: c ends as gradients of the displacements of known nodes; what the residual takes off for the line goes to
-/// its ends. One item per side line; of the edges those in sides 0 and 1.
+/// Transpose of SideResidual: c ends as gradients of the displacements of known nodes; what the residual takes off for
+/// the line goes to its ends. One item per side line; of the edges those in sides 0 and 1.
 template <class MemorySpace>
 struct SideResidualBack {
   Kokkos::View<Chain const*, MemorySpace> chains;

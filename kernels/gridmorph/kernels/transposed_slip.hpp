@@ -1,9 +1,11 @@
-// Gradients through slip surfaces: of the displacement u of a node, from that of what its surfaces make of it (slip_surface.hpp,
-// slip_edge.hpp). With D the derivative that constrain_rate() applies, D^T g; of one surface written out,
+// Gradients through slip surfaces: of the displacement u of a node, from that of what its surfaces make of it
+// (slip_surface.hpp, slip_edge.hpp). With D the derivative that constrain_rate() applies, D^T g; of one surface written
+// out,
 //
 //   plane, axial   g - (n.g) n
-//   revolution     g - (m.g) ((1 - e / r) m - p' n) - (e / r) (g - (n.g) n),  m the radial direction, e too far off, p' the slope
-//   meridional     g - (k.g) a - e ((t.g) c + (k_r / r) (g - (n.g) n - (m.g) m)),  k the normal, a the gradient of the distance along it,
+//   revolution     g - (m.g) ((1 - e / r) m - p' n) - (e / r) (g - (n.g) n),  m the radial direction, e too far off, p'
+//   the slope meridional     g - (k.g) a - e ((t.g) c + (k_r / r) (g - (n.g) n - (m.g) m)),  k the normal, a the
+//   gradient of the distance along it,
 //                  t the tangent, c t . q' the rate at which the normal turns
 //
 // of facets and where several surfaces meet by exact rates along three axes.

@@ -1,7 +1,9 @@
-// What rows of nodes hand back to the turned ends of their lines: the transpose of turned_row.hpp, one loop for the whole row per end.
-// Ends and sums lie in rows of their own, line by line, so that the compiler can vectorise these loops.
+// What rows of nodes hand back to the turned ends of their lines: the transpose of turned_row.hpp, one loop for the
+// whole row per end. Ends and sums lie in rows of their own, line by line, so that the compiler can vectorise these
+// loops.
 //
-// Cost per node and end that turns: about 90 flops with one division, the ends and their sums from the first-level cache.
+// Cost per node and end that turns: about 90 flops with one division, the ends and their sums from the first-level
+// cache.
 #pragma once
 
 #include <gridmorph/kernels/rotation_gradient.hpp>
@@ -9,8 +11,8 @@
 
 namespace gridmorph::kernels {
 
-/// turn_weights() of one of a chain's ends, for a row: one loop per law, so that none has a choice in it. All laws of two rotations are
-/// the same from both ends.
+/// turn_weights() of one of a chain's ends, for a row: one loop per law, so that none has a choice in it. All laws of
+/// two rotations are the same from both ends.
 KOKKOS_FORCEINLINE_FUNCTION void fill_turn_weights(Chain const& chain, unsigned end, double const* t, int n,
                                                    double* f) {
   double const from = end, sign = end == 0 ? 1 : -1;
@@ -45,7 +47,8 @@ struct TurnedEndGradients {
   }
 };
 
-/// n neighbouring lines of a chain that turns, whose first ends are `lower` + w; or one line, whose nodes are added up in n shares.
+/// n neighbouring lines of a chain that turns, whose first ends are `lower` + w; or one line, whose nodes are added up
+/// in n shares.
 template <int width>
 class TurnedLines {
  public:

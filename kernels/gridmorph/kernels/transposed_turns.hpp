@@ -1,9 +1,9 @@
-// Gradients through rotations of line ends: the transposes of turned_line.hpp, turned_ends.hpp and root_turn.hpp, linearised where the
-// walls are.
+// Gradients through rotations of line ends: the transposes of turned_line.hpp, turned_ends.hpp and root_turn.hpp,
+// linearised where the walls are.
 //
-// The rotation of a wall node hands its gradient to its neighbours, and lines of the near field and end walls theirs to the rotations that they
-// depend on; what end walls make of slip surfaces is taken by exact rates (dual.hpp) along the three axes of what it depends on. Every sum is
-// made by one work item in one order.
+// The rotation of a wall node hands its gradient to its neighbours, and lines of the near field and end walls theirs to
+// the rotations that they depend on; what end walls make of slip surfaces is taken by exact rates (dual.hpp) along the
+// three axes of what it depends on. Every sum is made by one work item in one order.
 //
 // Cost: about 100 flops per node and end that turns; per wall node about twice its rotation.
 #pragma once
@@ -68,7 +68,8 @@ struct SeededVectors {
   KOKKOS_INLINE_FUNCTION DualVec3 operator[](Index n) const { return {values[n], n == seeded ? direction : Vec3{}}; }
 };
 
-/// gradient(target) += sum of of(dependent, target) over what depends on it: gradients by way of one dependent. One item per target.
+/// gradient(target) += sum of of(dependent, target) over what depends on it: gradients by way of one dependent. One
+/// item per target.
 template <class MemorySpace, class Function>
 struct PullBack {
   Dependents<MemorySpace> on;
@@ -89,8 +90,8 @@ void pull_back(char const* label, Exec const& exec, Dependents<typename Exec::me
   launch(label, exec, PullBack<typename Exec::memory_space, Function>{on, of, gradient});
 }
 
-/// Transpose of FreeRootTurn and RawRootTurn: gradients of the displacements of a root's neighbours, at their places in the table in the frame of the
-/// root's slot, and after those of all roots that of its centre.
+/// Transpose of FreeRootTurn and RawRootTurn: gradients of the displacements of a root's neighbours, at their places in
+/// the table in the frame of the root's slot, and after those of all roots that of its centre.
 template <class MemorySpace>
 struct RawRootTurnBack {
   RootTable<MemorySpace> table;
@@ -225,8 +226,8 @@ struct EndWallTurnBy {
   }
 };
 
-/// Transpose of NearFieldTurn: raw(r) is added to; what end walls are handed is left in `parts`, four vectors per root in the frame of its
-/// slot: of alpha and of the normal after, end by end.
+/// Transpose of NearFieldTurn: raw(r) is added to; what end walls are handed is left in `parts`, four vectors per root
+/// in the frame of its slot: of alpha and of the normal after, end by end.
 template <class MemorySpace>
 struct NearFieldTurnBack {
   RootTable<MemorySpace> table;
@@ -288,7 +289,8 @@ struct NearFieldTurnBack {
   }
 };
 
-/// Transpose of TurnNearField, root by root: the rotations that lines of the near field begin and end with, and what keeps their heights.
+/// Transpose of TurnNearField, root by root: the rotations that lines of the near field begin and end with, and what
+/// keeps their heights.
 template <class MemorySpace>
 struct NearFieldLinesBack {
   Dependents<MemorySpace> lines_of_root;

@@ -1,6 +1,6 @@
-// Gradients through the rotation that a fan of neighbours gives a wall node, written out: the transposes of rotation.hpp's formulas, of
-// twist_about() (wall_turn.hpp) and of share_that_keeps_height() (kept_height.hpp). g is the gradient of what each gives; those of what it
-// takes are returned or added.
+// Gradients through the rotation that a fan of neighbours gives a wall node, written out: the transposes of
+// rotation.hpp's formulas, of twist_about() (wall_turn.hpp) and of share_that_keeps_height() (kept_height.hpp). g is
+// the gradient of what each gives; those of what it takes are returned or added.
 //
 // Cost: arms are read three times, 5, 50 and 40 flops each; 500 flops besides.
 #pragma once
@@ -42,7 +42,8 @@ KOKKOS_INLINE_FUNCTION Vec3 turn_between_gradient(Vec3 const& before, Vec3 const
   return (of_size * norm(before) / length) * after + of_cosine * before + cross(of_c, before);
 }
 
-/// Of both rotations in their product, which has been turned round if sign is -1, from that of the rotation that it is: added.
+/// Of both rotations in their product, which has been turned round if sign is -1, from that of the rotation that it is:
+/// added.
 KOKKOS_INLINE_FUNCTION void add_product(TurnProduct<Vec3> const& product, double sign, Vec3 const& first,
                                         Vec3 const& next, Vec3 const& of_r, Vec3& of_first, Vec3& of_next) {
   double const a = dot(first, first), b = dot(next, next), p = 1 - a, q = 1 - b, size = product.size + product.real;
@@ -104,8 +105,8 @@ struct TwistGradient {
   }
 };
 
-/// twist_about() of a fan and its gradients, from sums over the fan alone: with t1, t2 across the axis and T1, T2 the same turned back by the
-/// swing, all that it sums up are components of the moments along these.
+/// twist_about() of a fan and its gradients, from sums over the fan alone: with t1, t2 across the axis and T1, T2 the
+/// same turned back by the swing, all that it sums up are components of the moments along these.
 struct FanTwist {
   Vec3 axis, swing;
   FanMoments sums;

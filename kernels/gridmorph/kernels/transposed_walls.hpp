@@ -1,5 +1,6 @@
-// Transposes of how walls of elements turn and what stands on them: wall_turn.hpp, column_motion.hpp, layer_motion.hpp's seeds; and of
-// bodies that turn as wholes: body_turn.hpp. Rotations are linearised where the walls are.
+// Transposes of how walls of elements turn and what stands on them: wall_turn.hpp, column_motion.hpp,
+// layer_motion.hpp's seeds; and of bodies that turn as wholes: body_turn.hpp. Rotations are linearised where the walls
+// are.
 //
 // Cost: per column node as forwards; per wall node twice its rotation; per node and body that turns about
 // 150 flops, 16 bytes of shares, 48 read.
@@ -50,7 +51,8 @@ struct WallBack {
   }
 };
 
-/// Transpose of SeedMotions: places of walls and of columns, to the motion around each wall node and the columns' displacement.
+/// Transpose of SeedMotions: places of walls and of columns, to the motion around each wall node and the columns'
+/// displacement.
 template <class MemorySpace>
 struct SeedMotionsBack {
   ColumnTable<MemorySpace> columns;
@@ -73,8 +75,8 @@ struct SeedMotionsBack {
   }
 };
 
-/// Transpose of WallTurn: gradients of the displacements of the nodes around each wall node, at their places in WallTable::around, and after
-/// them all those of the wall nodes themselves.
+/// Transpose of WallTurn: gradients of the displacements of the nodes around each wall node, at their places in
+/// WallTable::around, and after them all those of the wall nodes themselves.
 template <class MemorySpace>
 struct WallTurnBack {
   WallTable<MemorySpace> wall;
@@ -189,7 +191,8 @@ KOKKOS_INLINE_FUNCTION void add_body_turn(Quaternion<Vec3> const& half, double f
 constexpr Index body_chunk = 1024;
 KOKKOS_INLINE_FUNCTION constexpr Index body_chunks(Index n) { return (n + body_chunk - 1) / body_chunk; }
 
-/// What the turns and shifts of all bodies give to nodes, handed back to them: parts, (chunks, bodies). node: empty for all of them.
+/// What the turns and shifts of all bodies give to nodes, handed back to them: parts, (chunks, bodies). node: empty for
+/// all of them.
 template <class MemorySpace>
 struct BodyPartsOfNodes {
   BodyTurnField<MemorySpace, Vec3> field;
@@ -281,7 +284,8 @@ struct TurnBodiesBack {
       }
   }
 };
-/// Transposes of SumBodyWalls and SumBodyShifts: to the motions around wall nodes, and listed as `slot` is. Item: a chunk.
+/// Transposes of SumBodyWalls and SumBodyShifts: to the motions around wall nodes, and listed as `slot` is. Item: a
+/// chunk.
 template <class MemorySpace>
 struct BodyWallsBack {
   BodyWalls<MemorySpace> walls;

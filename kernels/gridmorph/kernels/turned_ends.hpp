@@ -1,7 +1,7 @@
 // Rotations at the ends of lines made ready for the nodes between (turned_line.hpp): quaternions, pivots, stretches.
 //
-// A line of the near field turns about its wall node, from the wall's R(inner) to R(outer) (root_turn.hpp). The stretch s
-// keeps the height l.n of its first node above the wall, n' = R(raw) n the wall's normal after:
+// A line of the near field turns about its wall node, from the wall's R(inner) to R(outer) (root_turn.hpp). The stretch
+// s keeps the height l.n of its first node above the wall, n' = R(raw) n the wall's normal after:
 //
 //   (1 + f0 (s - 1)) n'.R(f0) l = n.l,   f0 that of the node
 #pragma once
@@ -81,7 +81,8 @@ struct TurnNearField {
     return {in, out, {wall, pivot, s}, {edge, pivot}};
   }
 
-  /// Lines along the wall have no height to keep, and a near field of one cell has none to give. inner_height: (n'.R(f0) l) of the head of this file.
+  /// Lines along the wall have no height to keep, and a near field of one cell has none to give. inner_height:
+  /// (n'.R(f0) l) of the head of this file.
   KOKKOS_INLINE_FUNCTION static bool keeps_height(NearFieldLine const& line, double inner_height) {
     double const height = dot(line.normal, line.edge);
     return line.f0 > 0.1 && height * height > 0.01 * dot(line.edge, line.edge) &&

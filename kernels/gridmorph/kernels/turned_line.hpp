@@ -1,4 +1,5 @@
-// Lines whose ends turn. An end that turns by R about a pivot p moves what is near it by (R - I)(x - p) besides its own displacement,
+// Lines whose ends turn. An end that turns by R about a pivot p moves what is near it by (R - I)(x - p) besides its own
+// displacement,
 //
 //   u(x) = u0 + w(t) (u1 - u0) + (R0(f0) - I)(x - p0) + (R1(f1) - I)(x - p1)
 //
@@ -6,22 +7,27 @@
 //
 //   square      f0 = (1 - t)^2, f1 = t^2
 //   c1          f0 = 1 - f1,    f1 = 3 t^2 - 2 t^3
-//   far         f0 = 1 - scale (P(reach t) - 1),  P(s) = (1 + s^2 / (1 + s))^(1/8),  scale = 1 / (P(reach) - 1): about like the
-//               logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with no slope at its
-//               start. By square roots, which every machine rounds alike
+//   far         f0 = 1 - scale (P(reach t) - 1),  P(s) = (1 + s^2 / (1 + s))^(1/8),  scale = 1 / (P(reach) - 1): about
+//   like the
+//               logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with no slope
+//               at its start. By square roots, which every machine rounds alike
 //   common      one rotation about one pivot, from one end's to the other's, by c1
-//   near_field  one rotation about the wall node, from the wall's to that of the outer edge, and the stretch s of the wall's
-//               lines (turned_ends.hpp):  u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t + 0.03))^3
+//   near_field  one rotation about the wall node, from the wall's to that of the outer edge, and the stretch s of the
+//   wall's
+//               lines (turned_ends.hpp):  u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t +
+//               0.03))^3
 //
 // Shares of rotations (rotation.hpp) are taken by unit quaternions, here from that of no rotation or of the other end,
 //
 //   q(f) = (q1 + f (q0 - q1)) / |q1 + f (q0 - q1)|
 //
-// so what is between two ends is turned and never shrunk, as it would be by a mean of matrices, and a node costs no trigonometry
-// (K. Shoemake, Computer Graphics 19 (1985) 245; the angle is that of f to 2 degrees over two radians, to 8 over half a turn).
-// Nothing is added where x = p and where nothing turns. The rotation itself goes on as f0 r0 + f1 r1.
+// so what is between two ends is turned and never shrunk, as it would be by a mean of matrices, and a node costs no
+// trigonometry (K. Shoemake, Computer Graphics 19 (1985) 245; the angle is that of f to 2 degrees over two radians, to
+// 8 over half a turn). Nothing is added where x = p and where nothing turns. The rotation itself goes on as f0 r0 + f1
+// r1.
 //
-// Cost per node and turned end: about 50 flops with one division, 56 bytes from cache (near field 64, 96 where its outer edge turns).
+// Cost per node and turned end: about 50 flops with one division, 56 bytes from cache (near field 64, 96 where its
+// outer edge turns).
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -109,7 +115,8 @@ struct TurnedEndsWithRates {
 KOKKOS_INLINE_FUNCTION bool turns_as_one(Chain const& chain) {
   return chain.turn == TurnLaw::near_field || chain.turn == TurnLaw::common;
 }
-/// What one rotation for both ends, `between` them, adds to a node at x with the share f of the first one, which stretches.
+/// What one rotation for both ends, `between` them, adds to a node at x with the share f of the first one, which
+/// stretches.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V turned_as_one(Quaternion<V> const& between, TurnedEnd<V> const& wall, double f,
                                             Vec3 const& x) {

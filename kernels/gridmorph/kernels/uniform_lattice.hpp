@@ -44,8 +44,8 @@ struct UniformLattice {
     return at;
   }
 
-  /// Value at x of a field on the nodes; outside the lattice that of its nearest point. Written in differences, so that equal
-  /// values come back bit for bit.
+  /// Value at x of a field on the nodes; outside the lattice that of its nearest point. Written in differences, so that
+  /// equal values come back bit for bit.
   KOKKOS_INLINE_FUNCTION Vec3 at(Vec3 const* value, Vec3 const& x) const {
     PlaceInCell const p = place(x);
     std::int64_t const* const node = p.cell;

@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-// The linker keeps one copy of each inline function that two sources compile. What rounds has another name in sources of the
-// library than in those of its users, so that its results do not depend on the compiler options of theirs.
+// The linker keeps one copy of each inline function that two sources compile. What rounds has another name in sources
+// of the library than in those of its users, so that its results do not depend on the compiler options of theirs.
 #ifndef GRIDMORPH_ARITHMETIC
 #define GRIDMORPH_ARITHMETIC arithmetic_of_the_user
 #endif
@@ -74,8 +74,8 @@ KOKKOS_INLINE_FUNCTION Mat3 transpose(Mat3 const& a) {
 
 }  // namespace gridmorph::kernels
 
-// Vectors are what the whole library speaks, so they have their short names in it. Everything else of the kernels is named
-// with its namespace: kernels::Facet.
+// Vectors are what the whole library speaks, so they have their short names in it. Everything else of the kernels is
+// named with its namespace: kernels::Facet.
 namespace gridmorph {
 using kernels::dot, kernels::cross, kernels::norm, kernels::distance, kernels::transpose;
 using kernels::Vec3, kernels::Mat3;

@@ -1,8 +1,8 @@
-// Vectors at nodes where their owner keeps them: component arrays of any stride, interleaved, or zones apart from one another;
-// double or float.
+// Vectors at nodes where their owner keeps them: component arrays of any stride, interleaved, or zones apart from one
+// another; double or float.
 //
-// What the layout is, a program knows only when it runs. Kernels ask once per row of nodes, so one instance of each serves
-// all layouts, and rows of unit stride cost what they cost in plain arrays.
+// What the layout is, a program knows only when it runs. Kernels ask once per row of nodes, so one instance of each
+// serves all layouts, and rows of unit stride cost what they cost in plain arrays.
 #pragma once
 
 #include <gridmorph/kernels/grid_line.hpp>

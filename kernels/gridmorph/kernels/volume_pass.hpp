@@ -4,9 +4,10 @@
 //   each of the form  u0 + w(t) (u1 - u0) [+ turned ends] [+ c],   out = x + u, or u itself
 //
 // End values are two-dimensional tables that stay in cache; no neighbour of a node is read.
-// Cost per node: 24 bytes of coordinates read and 24 written (none read where the displacement itself is asked for), 8 read
-// per line parameter: 0 in a near field (8 where it turns), 8 in the far field, 8 more under a slip surface. Where line ends turn
-// (turned_line.hpp), the coordinates are read for displacements too, and where parts have a motion in common (common_rows.hpp).
+// Cost per node: 24 bytes of coordinates read and 24 written (none read where the displacement itself is asked for), 8
+// read per line parameter: 0 in a near field (8 where it turns), 8 in the far field, 8 more under a slip surface. Where
+// line ends turn (turned_line.hpp), the coordinates are read for displacements too, and where parts have a motion in
+// common (common_rows.hpp).
 #pragma once
 
 #include <gridmorph/kernels/common_rows.hpp>
@@ -185,8 +186,8 @@ struct VolumePass {
     }
   }
 
-  /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants, so
-  /// that the compiler sees one line for the whole row, or unit stride.
+  /// One loop per law, and per step between the lines of neighbouring nodes: the steps that occur most are constants,
+  /// so that the compiler sees one line for the whole row, or unit stride.
   template <bool Add>
   KOKKOS_INLINE_FUNCTION void interpolate(Chain const& chain, RowEnds const& row, Row& u) const {
     with_step(row.step, [&](auto step) {

@@ -1,6 +1,7 @@
 // First cell height and orthogonality at one node of a wall.
 //
-//   normal         n = t1 x t2 / |t1 x t2|, t1 and t2 the differences of wall nodes along the two grid directions of the
+//   normal         n = t1 x t2 / |t1 x t2|, t1 and t2 the differences of wall nodes along the two grid directions of
+//   the
 //                  wall: central inside a wall patch, one-sided on its edges
 //   first height   |v . n|, v from the wall node to the next node on the grid line that leaves the wall
 //   orthogonality  angle between v and the normal, arccos(|v . n| / |v|): 0 degrees for a perpendicular line
@@ -98,8 +99,8 @@ struct MeasureWalls {
   }
 };
 
-/// The nodes of one group of walls of elements: wall node, next node on its column, faces of the group around it (CSR) and their
-/// nodes (CSR).
+/// The nodes of one group of walls of elements: wall node, next node on its column, faces of the group around it (CSR)
+/// and their nodes (CSR).
 template <class MemorySpace>
 struct ColumnWall {
   Kokkos::View<std::int32_t const*, MemorySpace> node, next;

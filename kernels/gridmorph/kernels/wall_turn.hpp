@@ -9,12 +9,13 @@
 //
 //   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1
 //
-// with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what centred
-// differences give. On these w = 1 / |p|^2, so that every arm counts alike, whatever its length: where cells are thin along the wall, as
-// beside an end wall that is resolved, the sag of a long arm is more than a short one, and would decide how that turns. On elements w = 1.
+// with p their places from x before, turned by the first rotation, and q those after. On structured walls n is what
+// centred differences give. On these w = 1 / |p|^2, so that every arm counts alike, whatever its length: where cells
+// are thin along the wall, as beside an end wall that is resolved, the sag of a long arm is more than a short one, and
+// would decide how that turns. On elements w = 1.
 //
-// Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 100 flops per face, 24 bytes written; the
-// motion around it 48 bytes read, 96 written.
+// Cost per wall node: its faces' nodes read twice (48 bytes each, from cache), about 100 flops per face, 24 bytes
+// written; the motion around it 48 bytes read, 96 written.
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
@@ -26,8 +27,8 @@
 
 namespace gridmorph::kernels {
 
-/// What the arms of a fan count: the inverse squares of their lengths before. Arms shorter than a ten-millionth of the longest are round-off
-/// between nodes at one place, and count less.
+/// What the arms of a fan count: the inverse squares of their lengths before. Arms shorter than a ten-millionth of the
+/// longest are round-off between nodes at one place, and count less.
 class ArmWeights {
  public:
   /// before(k), V each.
@@ -51,8 +52,8 @@ struct UnweighedArms {
   KOKKOS_INLINE_FUNCTION double operator()(Vec3 const&) const { return 1; }
 };
 
-/// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k), V each.
-/// Where they lie on one line, their mean angle. weight(arm before): what it counts.
+/// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k),
+/// V each. Where they lie on one line, their mean angle. weight(arm before): what it counts.
 template <class V, class Before, class After, class Weight>
 KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after,
                                      Weight const& weight) {

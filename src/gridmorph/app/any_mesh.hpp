@@ -1,5 +1,5 @@
-// A mesh of either kind, as commands and runs see it. What differs by kind stands behind the two classes here: blocks are in
-// block_mesh.cpp and block_plan.cpp, elements in element_mesh.cpp and element_plan.cpp.
+// A mesh of either kind, as commands and runs see it. What differs by kind stands behind the two classes here: blocks
+// are in block_mesh.cpp and block_plan.cpp, elements in element_mesh.cpp and element_plan.cpp.
 #pragma once
 
 #include <gridmorph/app/casefile/case_file.hpp>
@@ -99,7 +99,8 @@ class AnyPlan {
   [[nodiscard]] virtual bool guards() const { return true; }
   /// Smooths around cells that came out bad.
   [[nodiscard]] virtual RelaxReport relax(Coordinates& morphed) const = 0;
-  /// Remembers where a mesh of a sequence lost its shape: relax() then does the same to all of them, so that they do not jump.
+  /// Remembers where a mesh of a sequence lost its shape: relax() then does the same to all of them, so that they do
+  /// not jump.
   virtual void freeze(Coordinates const& /*morphed*/) {}
   /// Remembers what became of a displacement that morph() brings to `plain`.
   void record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded);
@@ -116,8 +117,8 @@ class AnyPlan {
   [[nodiscard]] virtual QualityReport measure(QualityWanted wanted) const = 0;
   /// `verdict`: that is all that is wanted; `at_once`: this is the motion as the rules stand, no step of a sequence.
   [[nodiscard]] virtual PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const = 0;
-  /// What a mesh goes through on its way, as meshes in a folder, which is made where it is missing. `displacement`: of the boundary, that came to
-  /// `morphed`.
+  /// What a mesh goes through on its way, as meshes in a folder, which is made where it is missing. `displacement`: of
+  /// the boundary, that came to `morphed`.
   virtual void write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
                             Coordinates const& morphed) const = 0;
 
@@ -125,7 +126,8 @@ class AnyPlan {
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
   /// Of the motion as the rules stand; of a sequence, at the step that comes out worst. Moves nothing.
   [[nodiscard]] virtual PlanPrediction predict() { return {}; }
-  /// Displacements that the rules gave so far and slip surfaces undo, in part or for the most part. Those of which most is undone throw.
+  /// Displacements that the rules gave so far and slip surfaces undo, in part or for the most part. Those of which most
+  /// is undone throw.
   [[nodiscard]] std::vector<Shortfall> trimmed() const;
   /// Of planning.
   [[nodiscard]] virtual StepTimes times() const = 0;
@@ -169,14 +171,16 @@ CellFields<Kokkos::HostSpace> fields_of(std::vector<CellField>& out, std::span<M
 /// Makes the folder of AnyPlan::write_stages(). Throws MachineError.
 void make_stage_folder(std::filesystem::path const& folder);
 
-/// Steps of a sequence that AnyPlan::predict() looks at, 0 without one: all, of long ones `most`, spread evenly; 100 take the time of a plan.
+/// Steps of a sequence that AnyPlan::predict() looks at, 0 without one: all, of long ones `most`, spread evenly; 100
+/// take the time of a plan.
 std::vector<int> predicted_steps(CaseFile const& case_file, int most = 100);
 /// "step 7 of 24 comes out worst: "
 std::string worst_step_text(CaseFile const& case_file, int step);
 
 /// Those of a larger share than is allowed.
 std::vector<Shortfall> trimmed_beyond(double allowed, std::vector<Trim> const& trims);
-/// Models of `field` rules that are far from some of the nodes: a warning each. Throws MotionError where they lie elsewhere, by all nodes.
+/// Models of `field` rules that are far from some of the nodes: a warning each. Throws MotionError where they lie
+/// elsewhere, by all nodes.
 std::vector<Shortfall> mapping_warnings(CaseFile const& case_file);
 /// How far nodes were from the models of `field` rules, and what was left out of these.
 std::vector<std::string> mapping_notes(CaseFile const& case_file);

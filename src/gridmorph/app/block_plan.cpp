@@ -27,7 +27,8 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// Those that rules move, and those that are measured alone. mesh: with the patches of the former; notes: gets what there is to say of the latter.
+/// Those that rules move, and those that are measured alone. mesh: with the patches of the former; notes: gets what
+/// there is to say of the latter.
 MeasuredRegions measured_regions(Mesh mesh, std::vector<InnerRegion> const& measured, std::vector<std::string>& notes) {
   std::size_t const n_notes = mesh.notes.size();
   add_regions(mesh, measured);

@@ -19,8 +19,8 @@ class Clearances {
   /// Fills in what moves nodes whether or not the mesh keeps them on the wall; false where that is not known.
   using ByRule = std::function<bool(std::span<Index const> nodes, std::span<Vec3> displacement)>;
 
-  /// `boundary`: of the baseline. `case_file` must outlive this. Throws MotionError for selectors that name no patches, and for walls
-  /// without an area.
+  /// `boundary`: of the baseline. `case_file` must outlive this. Throws MotionError for selectors that name no patches,
+  /// and for walls without an area.
   Clearances(CaseFile const& case_file, Boundary boundary);
 
   [[nodiscard]] std::size_t size() const { return tips_.size(); }

@@ -63,7 +63,8 @@ class ElementMesh final : public AnyMesh {
   [[nodiscard]] std::unique_ptr<AnyPlan> plan(CaseFile const& case_file) const override;
 
  private:
-  /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of OpenFOAM.
+  /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of
+  /// OpenFOAM.
   bool by_faces_;
 };
 

@@ -30,8 +30,9 @@ struct Recipe {
   [[nodiscard]] std::string keys(bool unstructured) const;
 };
 
-/// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file has are left out, and all
-/// where it has `boundary_layer = false`. Of elements: that translate, rotate or blend, of all moving walls where it has no [boundary_layer].
+/// Near fields that translate, and that turn and hand on nothing, a quarter and all of it; those that the case file has
+/// are left out, and all where it has `boundary_layer = false`. Of elements: that translate, rotate or blend, of all
+/// moving walls where it has no [boundary_layer].
 std::vector<Recipe> other_near_fields(CaseFile const& case_file, bool unstructured);
 /// `recipe` with each of the laws that it does not have; elements have three.
 std::vector<Recipe> other_laws(CaseFile const& case_file, Recipe const& recipe, bool unstructured);
@@ -58,9 +59,10 @@ struct Trial {
   bool falls_short = true;
 };
 
-/// Tries recipes until one does not fall short: near fields, with the best of them laws, and (`chains`, `smoothing`) with the best of these the predicted
-/// order of chains and smoothing. make(case file): makes the mesh so, throws Error where it cannot be made; decide(case file): null where what was made is not better than what was there
-/// before it, or the case file that it was made by.
+/// Tries recipes until one does not fall short: near fields, with the best of them laws, and (`chains`, `smoothing`)
+/// with the best of these the predicted order of chains and smoothing. make(case file): makes the mesh so, throws Error
+/// where it cannot be made; decide(case file): null where what was made is not better than what was there before it, or
+/// the case file that it was made by.
 struct RecipeSearch {
   CaseFile const& case_file;
   bool unstructured, chains, smoothing;

@@ -370,8 +370,8 @@ std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls) {
 
 namespace {
 
-/// Files that [output] stages writes, as far as they are known before there is a plan: which stages blocks have is not, so of these what is there
-/// already, and what has the name of a stage among the other outputs.
+/// Files that [output] stages writes, as far as they are known before there is a plan: which stages blocks have is not,
+/// so of these what is there already, and what has the name of a stage among the other outputs.
 RunFiles stage_files(std::filesystem::path const& folder, MeshKind kind, RunFiles const& others) {
   RunFiles out;
   auto const add = [&](std::filesystem::path const& path) { out.push_back({"stage", path, true}); };

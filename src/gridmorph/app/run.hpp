@@ -1,6 +1,7 @@
 // One case file from mesh file to morphed meshes, quality and report, for both kinds of mesh:
 //
-//   read -> rules, plan -> (boundary -> volume -> guard -> quality -> more steps where needed) per moment -> files, report
+//   read -> rules, plan -> (boundary -> volume -> guard -> quality -> more steps where needed) per moment -> files,
+//   report
 #pragma once
 
 #include <gridmorph/app/any_mesh.hpp>
@@ -53,29 +54,34 @@ class Run {
   /// Reads and plans. The case file must outlive the run.
   Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal);
 
-  /// From here on measurements keep `page_measures` of every cell, of the baseline and of the result, unless a verdict is all that is wanted.
+  /// From here on measurements keep `page_measures` of every cell, of the baseline and of the result, unless a verdict
+  /// is all that is wanted.
   void keep_measures() { keep_ = true; }
   /// Unless a verdict is all that is wanted.
   void measure_baseline();
-  /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came out bad.
-  /// `times`: gets what it took.
+  /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came
+  /// out bad. `times`: gets what it took.
   RelaxReport morph(Moment const* when = nullptr, StepTimes* times = nullptr);
-  /// Makes the meshes of these moments to see where any of them loses its shape: smoothing is then the same in all of them.
+  /// Makes the meshes of these moments to see where any of them loses its shape: smoothing is then the same in all of
+  /// them.
   void freeze_guard(std::vector<Moment> const& moments);
   /// Quality of the result, and fields on the way.
   void measure();
-  /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the best stays
-  /// the result.
+  /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the
+  /// best stays the result.
   TriedSteps try_steps();
-  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them other laws, of that the predicted order of chains, and of that what
-  /// smoothing makes, until nothing falls short. What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant
-  /// stays the result, with its plan. Of a sequence the worst of its moments is what is made again, and all have that plan. Cost: a plan, a morph and a measurement each, up to ten of them, and one
-  /// smoothing; before that a morph and a measurement per moment.
+  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them
+  /// other laws, of that the predicted order of chains, and of that what smoothing makes, until nothing falls short.
+  /// What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant stays
+  /// the result, with its plan. Of a sequence the worst of its moments is what is made again, and all have that plan.
+  /// Cost: a plan, a morph and a measurement each, up to ten of them, and one smoothing; before that a morph and a
+  /// measurement per moment.
   Retried retry(std::vector<Moment> const& moments = {});
-  /// Makes what the guard did to the result, or does at these moments (at most SmoothingRecord::most of them, evenly spaced), a linear part of the plan; the result then is what that gives. Cost: a morph and a guard per moment.
+  /// Makes what the guard did to the result, or does at these moments (at most SmoothingRecord::most of them, evenly
+  /// spaced), a linear part of the plan; the result then is what that gives. Cost: a morph and a guard per moment.
   FrozenIntoPlan freeze_into_plan(std::vector<Moment> const& moments = {});
-  /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate holds, found by halving: at most
-  /// seven morphs. The result stays as it is.
+  /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate
+  /// holds, found by halving: at most seven morphs. The result stays as it is.
   ValidShare largest_valid_share();
 
   [[nodiscard]] AnyMesh const& mesh() const { return *mesh_; }
@@ -93,7 +99,8 @@ class Run {
   };
   [[nodiscard]] KeptMeasure kept(Measure measure) const;
 
-  /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls without an area.
+  /// [[clearance]] of the result, of a moment of a sequence where one is given. Throws MotionError for walls without an
+  /// area.
   [[nodiscard]] std::vector<TipClearance> clearances(Moment const* when = nullptr) const;
 
   /// What the motion would make of cells.
@@ -101,8 +108,8 @@ class Run {
 
   /// Of this quality against the baseline.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of(QualityReport const& quality) const;
-  /// Of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip surfaces undo. Throws MotionError
-  /// where models lie elsewhere.
+  /// Of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip surfaces
+  /// undo. Throws MotionError where models lie elsewhere.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of_motion() const;
   /// The report, less the name of the output.
   [[nodiscard]] nlohmann::json json(QualityReport const& quality, PlanOutcome const& outcome) const;
@@ -164,12 +171,11 @@ std::string wrote_report(std::optional<std::filesystem::path> const& report);
 /// What quiet runs are told, since no table says it.
 std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls);
 
-/// `gridmorph morph`: one mesh. Writes it and the report, prints the tables. Throws ConfigError before any work when an output
-/// cannot be written where it should.
-/// typed: the command line, for the page.
+/// `gridmorph morph`: one mesh. Writes it and the report, prints the tables. Throws ConfigError before any work when an
+/// output cannot be written where it should. typed: the command line, for the page.
 int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& terminal, std::string const& typed = {});
-/// The same for every step of [sequence] from one plan: a table of the steps, the quality of the worst. Nothing is written when a
-/// step has cells inverted that were not in the baseline, unless the case file says so.
+/// The same for every step of [sequence] from one plan: a table of the steps, the quality of the worst. Nothing is
+/// written when a step has cells inverted that were not in the baseline, unless the case file says so.
 int morph_sequence(CaseFile const& case_file, MeshSource const& file, Terminal& terminal,
                    std::string const& typed = {});
 

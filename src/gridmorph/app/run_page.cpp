@@ -289,7 +289,8 @@ SectionFrame whole_frame(std::size_t cut, page::FlatBox const& box, std::string 
   return {cut, {all, all}, int(section_width * ratio), std::move(title)};
 }
 
-/// An end of what moves along the first coordinate: a leading or trailing edge, a nose, a tail. In each mesh about where it is there.
+/// An end of what moves along the first coordinate: a leading or trailing edge, a nose, a tail. In each mesh about
+/// where it is there.
 SectionFrame end_frame(std::size_t cut, BothSections const& both, bool first, std::string title) {
   page::FlatBox const box = both.box();
   double const size = std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);

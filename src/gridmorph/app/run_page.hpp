@@ -38,9 +38,11 @@ class RunPage {
   void begin(Run const& run);
   /// The same of the passage of a wheel, which is one of a machine.
   void begin_passage(std::unique_ptr<page::PictureMesh> pictures, PatchRoles roles, Coordinates const& baseline);
-  /// Remembers the surface as the run has it now, of a sequence of `of` steps: of some of them, and of the worst so far.
+  /// Remembers the surface as the run has it now, of a sequence of `of` steps: of some of them, and of the worst so
+  /// far.
   void add_step(Run const& run, int step, int of, bool worst);
-  /// All pictures and numbers of the run as it stands. quality: as the report has it. Cost: facets, cells of sections, pixels.
+  /// All pictures and numbers of the run as it stands. quality: as the report has it. Cost: facets, cells of sections,
+  /// pixels.
   void finish(Run const& run, QualityReport const& quality);
   /// Those of one passage of a wheel. cells: "cells" or "elements".
   void finish_passage(PageMeshes const& meshes, QualityReport const& quality, std::string const& cells);

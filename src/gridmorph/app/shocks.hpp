@@ -14,8 +14,9 @@ struct LocatedShocks {
   std::vector<std::string> notes;  ///< what was found where
 };
 
-/// Reads the solutions that regions and rules of the case file name and finds their shocks on the mesh. Without any, the case file as it is. Throws one
-/// MotionError with every region and rule whose shock cannot be found. Cost O(nodes + cells) for each.
+/// Reads the solutions that regions and rules of the case file name and finds their shocks on the mesh. Without any,
+/// the case file as it is. Throws one MotionError with every region and rule whose shock cannot be found. Cost O(nodes
+/// + cells) for each.
 LocatedShocks locate_shocks(CaseFile const& case_file, Mesh const& mesh);
 
 }  // namespace gridmorph::cli

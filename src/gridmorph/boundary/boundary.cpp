@@ -44,8 +44,8 @@ BoundarySurface surface_of(Mesh const& mesh, Patch const& patch) {
   return out;
 }
 
-/// The face as places among the nodes of its patch, so that its normal points into its element: elements may be numbered either
-/// way around. That of a line is across x line, `across` being the normal of the plane.
+/// The face as places among the nodes of its patch, so that its normal points into its element: elements may be
+/// numbered either way around. That of a line is across x line, `across` being the normal of the plane.
 std::vector<int> inward_face(Mesh const& mesh, UnstructuredTopology const& topology, Index f,
                              std::vector<Index> const& nodes, Vec3 const& across) {
   auto const face = topology.boundary.nodes[f];

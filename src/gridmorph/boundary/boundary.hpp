@@ -13,7 +13,8 @@
 
 namespace gridmorph {
 
-/// Corners of a facet, four or (the last is -1) three, in order around it; two in the boundary of a 2-D mesh of elements.
+/// Corners of a facet, four or (the last is -1) three, in order around it; two in the boundary of a 2-D mesh of
+/// elements.
 using GridFacet = std::array<int, 4>;
 
 /// One patch.
@@ -21,23 +22,26 @@ struct BoundarySurface {
   std::vector<Index> nodes;  ///< of the mesh, each once: i fastest on a grid, otherwise ascending
   std::optional<std::array<int, 2>>
       grid;  ///< patches of blocks: nodes along their two directions, the first one fastest; not of regions with cells
-  /// Faces of elements on `nodes`, their normals pointing into the mesh (of lines: Boundary::across() x line); fans of triangles where they have more than four corners.
+  /// Faces of elements on `nodes`, their normals pointing into the mesh (of lines: Boundary::across() x line); fans of
+  /// triangles where they have more than four corners.
   std::vector<GridFacet> faces;
   std::vector<int> in_file_order;  ///< of elements: places in `nodes` as the file counts its nodes
 };
 
-/// The patches of a mesh with nodes and facets, and its periodic connections. A value of its own: it shares the coordinates of the
-/// mesh and has no use for its elements.
+/// The patches of a mesh with nodes and facets, and its periodic connections. A value of its own: it shares the
+/// coordinates of the mesh and has no use for its elements.
 class Boundary {
  public:
   /// Of a mesh of blocks; `size`: Mesh::size(), where it is known. Cost O(nodes of patches).
   explicit Boundary(Mesh const& mesh, std::optional<double> size = {});
-  /// Of a mesh of elements; `size` as above. Nodes of a patch are those of the boundary faces it got, or all it lists where it got none.
-  /// `regions`: regions_of_elements(), which become patches behind those of the mesh. Cost O(boundary faces, log).
+  /// Of a mesh of elements; `size` as above. Nodes of a patch are those of the boundary faces it got, or all it lists
+  /// where it got none. `regions`: regions_of_elements(), which become patches behind those of the mesh. Cost
+  /// O(boundary faces, log).
   Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
            std::optional<double> size = {}, std::span<Patch const> regions = {});
 
-  /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the mesh.
+  /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the
+  /// mesh.
   [[nodiscard]] Mesh const& mesh() const { return mesh_; }
   /// Of the mesh.
   [[nodiscard]] double size() const { return size_; }
@@ -49,8 +53,8 @@ class Boundary {
   /// From the plane of such a mesh to the second places of its nodes.
   [[nodiscard]] Vec3 const& across() const { return across_; }
 
-  /// Positions of the nodes of patches, one after another. Lines come twice, the second time across the plane of the mesh: as
-  /// the edges of strips they have planes and profiles.
+  /// Positions of the nodes of patches, one after another. Lines come twice, the second time across the plane of the
+  /// mesh: as the edges of strips they have planes and profiles.
   [[nodiscard]] std::vector<Vec3> points(std::span<int const> patches) const;
   [[nodiscard]] std::vector<Vec3> points(int patch) const { return points({&patch, 1}); }
   /// Their facets, in no particular orientation; none of lines.

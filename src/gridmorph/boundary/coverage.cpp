@@ -56,8 +56,8 @@ std::vector<std::vector<int>> patches_by_zone(Mesh const& mesh) {
   return out;
 }
 
-/// Whether one patch or interface covers the face and nothing else lies on it: the rule in most meshes, and known without
-/// a look at single cells.
+/// Whether one patch or interface covers the face and nothing else lies on it: the rule in most meshes, and known
+/// without a look at single cells.
 bool has_one_owner(Mesh const& mesh, Links const& links, std::vector<int> const& patches, int zone, int axis,
                    int side) {
   int const plane = side == 0 ? 0 : mesh.zones[zone].extent[axis] - 1;

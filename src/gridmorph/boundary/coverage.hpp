@@ -15,11 +15,12 @@ namespace gridmorph {
 /// Cost: O(boundary nodes).
 void complete_patches(Mesh& mesh, Links const& links, TopologyOptions const& options);
 
-/// Throws MeshError naming every patch outside its zone or not on a face, every pair of overlapping patches, every patch
-/// that overlaps an interface, and every face range covered by nothing.
+/// Throws MeshError naming every patch outside its zone or not on a face, every pair of overlapping patches, every
+/// patch that overlaps an interface, and every face range covered by nothing.
 void check_coverage(Mesh const& mesh, Links const& links);
 
-/// connect(), complete_patches() and check_coverage() in one: reports unmatched interfaces and uncovered faces together.
+/// connect(), complete_patches() and check_coverage() in one: reports unmatched interfaces and uncovered faces
+/// together.
 Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions const& options);
 inline Links connect_and_check(Mesh& mesh, TopologyOptions const& options) {
   return connect_and_check(HostInstance(), mesh, options);

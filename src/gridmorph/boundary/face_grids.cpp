@@ -73,8 +73,8 @@ class Quads {
     }
   }
 
-  /// The half-edges that leave the origin of h between the cuts on both sides of its face, in the order around the point. `around`:
-  /// no cut, all around it.
+  /// The half-edges that leave the origin of h between the cuts on both sides of its face, in the order around the
+  /// point. `around`: no cut, all around it.
   [[nodiscard]] std::vector<int> sector(int h, bool& around) const {
     int first = h;
     around = false;
@@ -127,7 +127,8 @@ class Quads {
     std::vector<int> faces = faces_of_part(f);
     int corner = find_corner(faces);
     if (corner < 0) {
-      // Closed around: cut across at its first border, or anywhere where it has none; what is closed both ways is cut twice.
+      // Closed around: cut across at its first border, or anywhere where it has none; what is closed both ways is cut
+      // twice.
       for (int pass = 0; pass < 2 && corner < 0; ++pass) {
         int at = 4 * faces.front();
         for (int const face : faces)

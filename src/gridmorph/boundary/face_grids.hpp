@@ -20,12 +20,14 @@ struct FaceGrids {
   std::size_t left_over = 0;  ///< faces that are in no grid: triangles, and quadrilaterals in no rows
 };
 
-/// The grids that quadrilaterals make up. Faces are neighbours where they have a side in common and go the same way around.
+/// The grids that quadrilaterals make up. Faces are neighbours where they have a side in common and go the same way
+/// around.
 ///
-/// The surface is cut along its edges until every part is a grid: from every point where other than four faces meet, or three beside a
-/// cut, straight on until the next cut; where that leaves more than one part, along creases of more than `crease_angle_rad` too. A part
-/// that closes on itself is cut across, its first line again at its end. So the faces of one face of a block make one grid with its
-/// lines. Faces of two corners (the sides of a plane mesh) make lines, `extent` {n, 1}. Cost O(faces, log).
+/// The surface is cut along its edges until every part is a grid: from every point where other than four faces meet, or
+/// three beside a cut, straight on until the next cut; where that leaves more than one part, along creases of more than
+/// `crease_angle_rad` too. A part that closes on itself is cut across, its first line again at its end. So the faces of
+/// one face of a block make one grid with its lines. Faces of two corners (the sides of a plane mesh) make lines,
+/// `extent` {n, 1}. Cost O(faces, log).
 FaceGrids find_face_grids(std::vector<GridFacet> const& faces, std::vector<Vec3> const& points,
                           double crease_angle_rad = 0.87);
 

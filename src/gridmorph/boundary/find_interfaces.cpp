@@ -19,7 +19,8 @@ using topology::SurfaceCells;
 using topology::Turn;
 using topology::ZoneFace;
 
-/// A pair of cells with what it has in common with others of one interface: faces, turn, and where node (0, 0) would go.
+/// A pair of cells with what it has in common with others of one interface: faces, turn, and where node (0, 0) would
+/// go.
 struct Placed {
   int face, other_face, turn;
   std::array<int, 2> origin;

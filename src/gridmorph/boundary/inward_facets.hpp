@@ -7,8 +7,8 @@
 
 namespace gridmorph {
 
-/// Facets by nodes of the mesh. Lines, in the boundary of a 2-D mesh of elements, become strips across their plane, which lies in
-/// their middle.
+/// Facets by nodes of the mesh. Lines, in the boundary of a 2-D mesh of elements, become strips across their plane,
+/// which lies in their middle.
 class InwardFacets {
  public:
   InwardFacets() = default;

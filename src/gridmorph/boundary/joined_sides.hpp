@@ -17,10 +17,10 @@ struct JoinedSides {
   std::vector<char> turned;  ///< per grid: not at home
 };
 
-/// Pieces are patches that hang together by common vertices. One that shares an edge (two vertices or more, within 1e-7 of the
-/// size) with another when turned by a periodic transform of the mesh or its inverse goes there; pieces that nothing brings
-/// together stay where they are. Of the places where the whole may then be, that nearest to `near` is taken.
-/// Cost O(vertices * transforms).
+/// Pieces are patches that hang together by common vertices. One that shares an edge (two vertices or more, within 1e-7
+/// of the size) with another when turned by a periodic transform of the mesh or its inverse goes there; pieces that
+/// nothing brings together stay where they are. Of the places where the whole may then be, that nearest to `near` is
+/// taken. Cost O(vertices * transforms).
 JoinedSides join_sides(Boundary const& boundary, PatchSurface const& surface, Vec3 const& near);
 
 }  // namespace gridmorph

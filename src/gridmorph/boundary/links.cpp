@@ -49,8 +49,9 @@ bool lies_on_faces(Mesh const& mesh, Interface1to1 const& face) {
   return within(donor, image) && on_one_face(donor, image);
 }
 
-/// Periodic transforms fitted to the nodes of all interfaces that are declared alike, there or back: what a strip over a tip or in a boundary layer leaves
-/// uncertain, the others know. The order of the interfaces, and whether a file has both sides of them, does not change a bit.
+/// Periodic transforms fitted to the nodes of all interfaces that are declared alike, there or back: what a strip over
+/// a tip or in a boundary layer leaves uncertain, the others know. The order of the interfaces, and whether a file has
+/// both sides of them, does not change a bit.
 class PeriodicFits {
  public:
   PeriodicFits(Mesh const& mesh, double size) : mesh_(mesh), size_(size), group_(mesh.interfaces.size(), -1) {
@@ -193,8 +194,8 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
                    mesh.zones[face.donor_zone].name + "'; correct the connection");
       continue;
     }
-    // The other side of a connection that is stored twice gets exactly the inverse of the transform fitted first, and is
-    // not reported a second time.
+    // The other side of a connection that is stored twice gets exactly the inverse of the transform fitted first, and
+    // is not reported a second time.
     auto const same = [&](Link const& l) {
       return l.interface != int(f) && l.zone == face.zone && l.donor_zone == face.donor_zone && l.range == face.range &&
              l.to_donor(face.range) == image && l.to_donor.orientation == face.to_donor.orientation;

@@ -17,7 +17,8 @@ Vec3 mean(std::vector<Vec3> const& points) {
   return (1 / double(points.size())) * sum;
 }
 
-/// A unit vector across the line on which all points lie; nothing where they span a plane. Points in one place lie on any line.
+/// A unit vector across the line on which all points lie; nothing where they span a plane. Points in one place lie on
+/// any line.
 std::optional<Vec3> across_line(std::vector<Vec3> const& points, double size) {
   Vec3 const centre = mean(points);
   auto const far = *std::max_element(points.begin(), points.end(), [&](Vec3 const& a, Vec3 const& b) {

@@ -13,8 +13,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Boxes are divided while cells inside fill less than this of them, and a division leaves out at least a share of what they hold:
-/// every box has planes that cut the mesh.
+/// Boxes are divided while cells inside fill less than this of them, and a division leaves out at least a share of what
+/// they hold: every box has planes that cut the mesh.
 constexpr double full_enough = 0.7, worth_a_plane = 0.15;
 
 /// A box of cells, begin <= c < end; empty where it holds none.

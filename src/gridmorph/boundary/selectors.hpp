@@ -41,7 +41,8 @@ Selection select(Mesh const& mesh, std::string const& selector);
 /// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
 std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
 
-/// "there are families: ...; regions: ..." of what the mesh has, for messages; BC names, connections and types where it has no families.
+/// "there are families: ...; regions: ..." of what the mesh has, for messages; BC names, connections and types where it
+/// has no families.
 std::string describe_selectable(Mesh const& mesh);
 
 /// Why a selector is no use: what was probably meant, and what there is.

@@ -14,7 +14,8 @@
 
 namespace gridmorph {
 
-/// A node, an element or an entry of a list in compressed lists: half the memory of an Index, enough for 2 thousand million.
+/// A node, an element or an entry of a list in compressed lists: half the memory of an Index, enough for 2 thousand
+/// million.
 using Index32 = std::int32_t;
 
 /// A graph in compressed sparse rows: row n is item[first[n]] ... item[first[n + 1] - 1].
@@ -63,8 +64,8 @@ Kokkos::View<T const*, typename Exec::memory_space> view_of([[maybe_unused]] Exe
 
 }  // namespace detail
 
-/// The lists in a memory space that kernels can read: copied, unless that is the host's, where the Views only look at them
-/// (the lists must then outlive the Views). Fences `exec` when it copies.
+/// The lists in a memory space that kernels can read: copied, unless that is the host's, where the Views only look at
+/// them (the lists must then outlive the Views). Fences `exec` when it copies.
 template <class Exec>
 CsrViews<typename Exec::memory_space> views(Exec const& exec, CsrGraph const& lists) {
   return {detail::view_of(exec, lists.first, "gridmorph::CsrGraph::first"),

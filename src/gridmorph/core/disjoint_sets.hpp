@@ -9,7 +9,8 @@
 
 namespace gridmorph {
 
-/// Sets of the numbers 0, 1, ...; each is known by its smallest member, its root. Cost per call: O(log n), in practice O(1).
+/// Sets of the numbers 0, 1, ...; each is known by its smallest member, its root. Cost per call: O(log n), in practice
+/// O(1).
 template <class Number>
 class DisjointSets {
  public:

@@ -14,8 +14,8 @@
 
 namespace gridmorph::detail {
 
-/// Keeps what the body of a loop throws (memory that has run out, most of all), which would end the program where it left a thread: of several
-/// numbers what the smallest one threw.
+/// Keeps what the body of a loop throws (memory that has run out, most of all), which would end the program where it
+/// left a thread: of several numbers what the smallest one threw.
 class Thrown {
  public:
   template <class Function, class Number>
@@ -40,8 +40,8 @@ class Thrown {
   Index number_ = 0;
 };
 
-/// Calls f(n) for 0 <= n < count on the instance, and waits; f writes nothing that another n writes. In equal shares, for
-/// small work. What f throws comes out here, once all other calls are made.
+/// Calls f(n) for 0 <= n < count on the instance, and waits; f writes nothing that another n writes. In equal shares,
+/// for small work. What f throws comes out here, once all other calls are made.
 template <class Function>
 void for_all(HostInstance const& host, std::string const& label, Index count, Function const& f) {
   host.visit([&](auto const& exec) {

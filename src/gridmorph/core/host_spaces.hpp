@@ -1,5 +1,5 @@
-// The execution spaces of the host that the library is compiled for: those that Kokkos has enabled, or of these the default one
-// alone (CMake option GRIDMORPH_DEFAULT_SPACES), which takes a third less time to compile.
+// The execution spaces of the host that the library is compiled for: those that Kokkos has enabled, or of these the
+// default one alone (CMake option GRIDMORPH_DEFAULT_SPACES), which takes a third less time to compile.
 #pragma once
 
 #include <Kokkos_Core.hpp>

@@ -1,5 +1,5 @@
-// Records grouped by the number they belong to; internal. The way from lists "which nodes has an element" to lists "what is
-// around a node" when the numbers of neighbours are far apart: no list is written in the order of the file.
+// Records grouped by the number they belong to; internal. The way from lists "which nodes has an element" to lists
+// "what is around a node" when the numbers of neighbours are far apart: no list is written in the order of the file.
 #pragma once
 
 #include <gridmorph/core/csr_graph.hpp>
@@ -16,10 +16,11 @@
 
 namespace gridmorph::detail {
 
-/// Records with keys 0 <= key < n_keys, first by ranges of keys (buckets), then, range after range in cache, by key. Records
-/// of a key keep the order of the items they come from, so nothing depends on the number of threads.
+/// Records with keys 0 <= key < n_keys, first by ranges of keys (buckets), then, range after range in cache, by key.
+/// Records of a key keep the order of the items they come from, so nothing depends on the number of threads.
 ///
-/// Cost per record: written and read twice, in streams; two calls of `emit` per item. Memory: 8 bytes and a record, each.
+/// Cost per record: written and read twice, in streams; two calls of `emit` per item. Memory: 8 bytes and a record,
+/// each.
 template <class Record>
 class IndexBuckets {
  public:
@@ -62,8 +63,8 @@ class IndexBuckets {
   /// Number of records.
   [[nodiscard]] Index size() const { return begin_.back(); }
 
-  /// Calls visit(key, at, records) once for every key, on the instance: `at` counts the records of smaller keys; `records` may be
-  /// changed and is gone after the call.
+  /// Calls visit(key, at, records) once for every key, on the instance: `at` counts the records of smaller keys;
+  /// `records` may be changed and is gone after the call.
   template <class Visit>
   void for_each_key(Visit const& visit) const {
     for_all_parts(host_, label_ + "::group", n_buckets_, [&](Index b) {
@@ -86,7 +87,8 @@ class IndexBuckets {
   }
 
  private:
-  // A bucket's records stay in the second-level cache, and there are fewer buckets than entries in the second-level TLB.
+  // A bucket's records stay in the second-level cache, and there are fewer buckets than entries in the second-level
+  // TLB.
   static constexpr Index smallest_bucket = 1024, most_buckets = 1024, smallest_chunk = 4096;
 
   struct Entry {

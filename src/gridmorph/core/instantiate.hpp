@@ -14,8 +14,8 @@
 //   GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 //   #undef GRIDMORPH_INSTANTIATE
 //
-// Code that calls such a function with another space fails at link time; it can include gridmorph/kernels/ instead. With
-// GRIDMORPH_DEFAULT_SPACES the list is that of core/host_spaces.hpp and the device's.
+// Code that calls such a function with another space fails at link time; it can include gridmorph/kernels/ instead.
+// With GRIDMORPH_DEFAULT_SPACES the list is that of core/host_spaces.hpp and the device's.
 #pragma once
 
 #include <gridmorph/core/host_spaces.hpp>

@@ -36,7 +36,8 @@ std::optional<double> quota_1(Path const& folder) {
 
 std::optional<double> processor_quota(Path const& groups, Path const& membership) {
   std::optional<double> least;
-  // Of a group and all that hold it. Inside a container the path is that of the host; the group itself is mounted at the root.
+  // Of a group and all that hold it. Inside a container the path is that of the host; the group itself is mounted at
+  // the root.
   auto const look = [&](Path const& root, std::string const& group, auto const& quota) {
     Path folder = root / Path(group).relative_path();
     for (;; folder = folder.parent_path()) {

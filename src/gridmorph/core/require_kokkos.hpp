@@ -3,8 +3,8 @@
 
 namespace gridmorph {
 
-/// Throws ConfigError when Kokkos is not initialised, or finalised already: Kokkos' own message speaks of an allocation.
-/// `who` is what needs it.
+/// Throws ConfigError when Kokkos is not initialised, or finalised already: Kokkos' own message speaks of an
+/// allocation. `who` is what needs it.
 void require_kokkos(char const* who);
 
 }  // namespace gridmorph

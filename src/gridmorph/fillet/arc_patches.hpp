@@ -9,7 +9,8 @@
 
 namespace gridmorph {
 
-/// Faces of a sheet's wall next to a corner that have nodes on the arc: so many along the wall from the new corner, beside these stations.
+/// Faces of a sheet's wall next to a corner that have nodes on the arc: so many along the wall from the new corner,
+/// beside these stations.
 struct ArcFaces {
   std::size_t corner = 0;
   int wall = 0;
@@ -17,10 +18,10 @@ struct ArcFaces {
   int first_station = 0, last_station = 0;
 };
 
-/// Takes them out of the patches of blade and end wall: the rest of a patch stays in up to four pieces. Their family is that of the blade
-/// with `_fillet` behind it, and they keep the blade's as another one, so that rules that name the blade name them too; walls without a family get one of
-/// their patch's name. A face that has nodes on the arc and others beyond counts as the arc's, so that the end wall's own nodes are all on the end wall.
-/// Cost O(patches).
+/// Takes them out of the patches of blade and end wall: the rest of a patch stays in up to four pieces. Their family is
+/// that of the blade with `_fillet` behind it, and they keep the blade's as another one, so that rules that name the
+/// blade name them too; walls without a family get one of their patch's name. A face that has nodes on the arc and
+/// others beyond counts as the arc's, so that the end wall's own nodes are all on the end wall. Cost O(patches).
 void separate_arcs(Mesh const& before, FilletOptions const& options, WallSheets const& sheets,
                    SheetLayers const& layers, std::span<ArcFaces const> arcs, SplitMesh& split);
 

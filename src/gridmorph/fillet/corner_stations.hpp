@@ -10,9 +10,8 @@
 
 namespace gridmorph {
 
-/// How many layers the corners take: options.layers, or as many as reach the mean radius off the blade and 0.6 of it off the
-/// end wall, as far as zones have them.
-/// Throws MeshError where a zone has too few cells.
+/// How many layers the corners take: options.layers, or as many as reach the mean radius off the blade and 0.6 of it
+/// off the end wall, as far as zones have them. Throws MeshError where a zone has too few cells.
 SheetLayers choose_layers(Mesh const& mesh, WallSheets const& sheets, FilletOptions const& options);
 
 class CornerStations {

@@ -1,4 +1,5 @@
-// Fillets between blades and end walls, in meshes of blocks: from a sharp corner to a round one, with blocks that suit it.
+// Fillets between blades and end walls, in meshes of blocks: from a sharp corner to a round one, with blocks that suit
+// it.
 #pragma once
 
 #include <gridmorph/fillet/split_mesh.hpp>
@@ -16,7 +17,8 @@ struct FilletOptions {
   /// Layers of cells off the blade and off the end wall that the corner takes; 0: as many as reach the mean
   /// radius and 0.6 of it.
   std::array<int, 2> layers{0, 0};
-  /// Where a blade ends inside of the mesh (the edges of H meshes), the fillet runs out: over this many radii before the end.
+  /// Where a blade ends inside of the mesh (the edges of H meshes), the fillet runs out: over this many radii before
+  /// the end.
   double run_out = 8;
 };
 
@@ -41,17 +43,19 @@ struct FilletResult : FilletFacts {
 
 /// The mesh with a fillet along all corners of `blade` with `end_wall`.
 ///
-/// The corners lose their blocks (split_corners()), and the layers along both walls meet in a mitre instead. Nodes of the walls go along
-/// their grid lines, by arc length (CornerStation); layers near the corner are laid anew between wall and their own far side, which
-/// stays: with P the cubic with the normal of the wall at its foot, f the share of its length and g the share of the corner in the line,
+/// The corners lose their blocks (split_corners()), and the layers along both walls meet in a mitre instead. Nodes of
+/// the walls go along their grid lines, by arc length (CornerStation); layers near the corner are laid anew between
+/// wall and their own far side, which stays: with P the cubic with the normal of the wall at its foot, f the share of
+/// its length and g the share of the corner in the line,
 ///
 ///     x = P_new(f_new) + (1 - g) (x_old - P_old(f_old)),
 ///
-/// f_new such that the first cell keeps its height. Beyond the reach of the corner, four times the layers or three radii, nodes stay as
-/// they are, bit for bit, unless their layers are counted anew.
+/// f_new such that the first cell keeps its height. Beyond the reach of the corner, four times the layers or three
+/// radii, nodes stay as they are, bit for bit, unless their layers are counted anew.
 ///
-/// Throws MeshError for walls that do not meet (find_wall_sheets()) and zones with too few cells, MotionError for a radius that does
-/// not fit, with the largest that would. Cost O(nodes), and O(log facets) for the wall nodes near the corner.
+/// Throws MeshError for walls that do not meet (find_wall_sheets()) and zones with too few cells, MotionError for a
+/// radius that does not fit, with the largest that would. Cost O(nodes), and O(log facets) for the wall nodes near the
+/// corner.
 FilletResult make_fillet(Mesh const& mesh, Links const& links, FilletOptions const& options);
 
 }  // namespace gridmorph

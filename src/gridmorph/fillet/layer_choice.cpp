@@ -11,11 +11,12 @@ namespace gridmorph {
 
 namespace {
 
-// Of the radius, that the layers off the blade and off the end wall should be high. Measured on a stage of leaning H meshes and an O4H
-// passage (docs/root_fillet.md): fewer layers off the blade invert cells where lines lean by 80 degrees.
+// Of the radius, that the layers off the blade and off the end wall should be high. Measured on a stage of leaning H
+// meshes and an O4H passage (docs/root_fillet.md): fewer layers off the blade invert cells where lines lean by 80
+// degrees.
 constexpr std::array<double, 2> room{1.0, 0.6};
-// Cells between the corner and the end of a line, for the rest of the arc: a sixth of it. With three of 53 off the blade of a passage the smallest
-// determinant is .25, with eight .53 (docs/root_fillet.md).
+// Cells between the corner and the end of a line, for the rest of the arc: a sixth of it. With three of 53 off the
+// blade of a passage the smallest determinant is .25, with eight .53 (docs/root_fillet.md).
 int least_left(int cells) { return std::max(1, cells / 6); }
 constexpr double flattest = 5;  // how much wider than high the layers in the corner may be, and the other way round
 
@@ -58,8 +59,8 @@ int layers_for_radius(Mesh const& mesh, std::vector<CornerFrame> const& corners,
   return n;
 }
 
-/// Where the corner stays sharp, layers that are much wider off one wall than off the other would meet in a mitre too flat for cells:
-/// those of the other wall become more.
+/// Where the corner stays sharp, layers that are much wider off one wall than off the other would meet in a mitre too
+/// flat for cells: those of the other wall become more.
 void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletOptions const& options,
               std::array<int, 2> const& most, std::array<int, 2>& layers) {
   for (auto const& corner : corners) {
@@ -79,8 +80,9 @@ void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletO
   }
 }
 
-/// The wall with fewer layers gets more cells in them: they have to be high enough for first cells as they were. Where that would make the corner
-/// much higher off one wall than off the other, layers stay as they are and first cells become smaller.
+/// The wall with fewer layers gets more cells in them: they have to be high enough for first cells as they were. Where
+/// that would make the corner much higher off one wall than off the other, layers stay as they are and first cells
+/// become smaller.
 void make_room(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletOptions const& options,
                std::array<int, 2> const& most, std::array<int, 2>& layers) {
   constexpr double spare = 1.1, highest = 2;

@@ -1,4 +1,5 @@
-// The ball that rolls along a corner and touches both of its walls: what a fillet of constant or varying radius is the envelope of.
+// The ball that rolls along a corner and touches both of its walls: what a fillet of constant or varying radius is the
+// envelope of.
 #pragma once
 
 #include <gridmorph/geometry/arc_curve.hpp>
@@ -36,8 +37,8 @@ struct CornerWalls {
 ///
 ///     c(s) = b(s) + r n_b(s),   (c(s) - f(c)) . n_w(f(c)) = r,
 ///
-/// b the blade's line, f the foot on the end wall; s by bisection. Nothing where none is found before the end of the line. Cost: some sixty
-/// feet, each O(log facets).
+/// b the blade's line, f the foot on the end wall; s by bisection. Nothing where none is found before the end of the
+/// line. Cost: some sixty feet, each O(log facets).
 std::optional<Ball> rolling_ball(CornerWalls const& walls, double radius);
 
 /// Arc length of the point of a line nearest to p, at least 0.

@@ -43,7 +43,8 @@ Vec3 inward_normal(Mesh const& mesh, std::span<Index32 const> nodes, Index32 ele
   return dot(normal, centre - middle) < 0 ? -normal : normal;
 }
 
-/// Faces of the walls along a root edge are those of prisms and hexahedra: nothing else has layers that could be bent around an arc.
+/// Faces of the walls along a root edge are those of prisms and hexahedra: nothing else has layers that could be bent
+/// around an arc.
 void require_layers(JoinedElements const& elements, WallEdges const& edges, std::array<Index32, 2> const& edge) {
   Mesh const& mesh = elements.mesh();
   BoundaryFaces const& faces = elements.topology().boundary;

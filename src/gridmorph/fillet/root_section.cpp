@@ -137,7 +137,8 @@ CornerMove BetweenSections::move(Vec3 const& at, CornerPoint const& p, bool in_m
     WallPoint const foot = wall_at(out.wall, way + (contact - half_arc));
     to_place = foot.point + h * foot.normal;
   }
-  // What a node is beside its place between the walls it stays, but on the mitre, where both walls have the same place for it.
+  // What a node is beside its place between the walls it stays, but on the mitre, where both walls have the same place
+  // for it.
   WallPoint const wall = wall_at(out.wall, along);
   Vec3 const from = wall.point + off * wall.normal, beside = at - root() - from;
   out.shift = (1 - out.still) * (to_place - from - bent * beside);

@@ -26,18 +26,18 @@ class Relation {
   std::vector<double> x_{0}, y_{0};
 };
 
-/// How layers of the two walls meet, from the places x off the blade and y off the end wall that find_mitre() chose. Where layers are as high on both
-/// walls, all relations say x = x.
+/// How layers of the two walls meet, from the places x off the blade and y off the end wall that find_mitre() chose.
+/// Where layers are as high on both walls, all relations say x = x.
 ///
-/// The mitre's height there is about the smaller distance, g = ((x^-2 + y^-2) / 2)^(-1/2). The farther off the walls, the less that counts: from 1.4 radii
-/// on places stay what they are.
+/// The mitre's height there is about the smaller distance, g = ((x^-2 + y^-2) / 2)^(-1/2). The farther off the walls,
+/// the less that counts: from 1.4 radii on places stay what they are.
 class MitreRelations {
  public:
   MitreRelations() = default;
   MitreRelations(std::vector<MitrePlace> const& places, std::vector<std::array<double, 2>> const& off, double radius);
 
-  /// Of a wall: distance of a layer from it -> its distance from the new wall in the mitre, where lines of the other wall come to its first place and
-  /// where it leaves its last one: a layer may have several.
+  /// Of a wall: distance of a layer from it -> its distance from the new wall in the mitre, where lines of the other
+  /// wall come to its first place and where it leaves its last one: a layer may have several.
   [[nodiscard]] Relation const& first(int wall) const { return first_[std::size_t(wall)]; }
   [[nodiscard]] Relation const& last(int wall) const { return last_[std::size_t(wall)]; }
   /// Of a wall: distance of a line from the other wall -> where it begins on the new wall.
@@ -85,7 +85,8 @@ class BetweenSections {
   [[nodiscard]] double reach() const { return mean(a_.reach, b_.reach); }
 
   [[nodiscard]] CornerPoint point(std::array<double, 2> const& off) const;
-  /// Of a node at `at`; `in_mitre`: find_mitre() chose it. It keeps what it is beside the section, less the nearer it comes to the mitre.
+  /// Of a node at `at`; `in_mitre`: find_mitre() chose it. It keeps what it is beside the section, less the nearer it
+  /// comes to the mitre.
   [[nodiscard]] CornerMove move(Vec3 const& at, CornerPoint const& p, bool in_mitre) const;
   /// Of the fillet, beside a point: the point of the arc's tube nearest to it across the corner.
   [[nodiscard]] Vec3 on_arc(Vec3 const& p, int wall, double arc_share) const;

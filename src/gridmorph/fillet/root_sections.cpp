@@ -56,8 +56,9 @@ std::vector<double> turning_of(WallEdges const& edges, RootLine const& line, std
   return out;
 }
 
-/// How far along the line the blade's surface goes per length up the blade, where its normal stays across the line: edges of blades lean.
-/// `turning`: of the normal along the line [1/length]. Nothing to go by where the blade is flat along the line.
+/// How far along the line the blade's surface goes per length up the blade, where its normal stays across the line:
+/// edges of blades lean. `turning`: of the normal along the line [1/length]. Nothing to go by where the blade is flat
+/// along the line.
 double sweep(FacetSurface const& blade, RootSection const& s, Vec3 const& up, Vec3 const& normal, double turning,
              double height) {
   constexpr int steps = 8;

@@ -40,8 +40,9 @@ class RootSections {
   [[nodiscard]] BetweenSections between(SectionPlace const& at) const {
     return {sections_[at.line][at.first], sections_[at.line][at.second], at.share};
   }
-  /// The section whose plane across the line a point lies in, of those nearby whose blade looks about the same way (`blade_normal`: off the
-  /// blade where the point is, unit, or zero), the last one beyond an end; nothing farther than `within` from all lines. Cost O(log places).
+  /// The section whose plane across the line a point lies in, of those nearby whose blade looks about the same way
+  /// (`blade_normal`: off the blade where the point is, unit, or zero), the last one beyond an end; nothing farther
+  /// than `within` from all lines. Cost O(log places).
   [[nodiscard]] std::optional<SectionPlace> find(Vec3 const& p, Vec3 const& blade_normal, double within) const;
   /// Null: not known.
   [[nodiscard]] KnownPlace const* known(Index32 place) const;

@@ -29,8 +29,9 @@ struct SplitMesh {
   std::vector<int> patches;      ///< per Mesh::patches, that of the old mesh
 };
 
-/// Takes the blocks out of all corners in which the two walls meet, and joins what they leave open: what was the far side of such a block
-/// along the blade and the one along the end wall become one face, node n off the blade on node n off the end wall. Seen across a corner,
+/// Takes the blocks out of all corners in which the two walls meet, and joins what they leave open: what was the far
+/// side of such a block along the blade and the one along the end wall become one face, node n off the blade on node n
+/// off the end wall. Seen across a corner,
 ///
 ///         blade                       blade
 ///         | b | core                  | b | core
@@ -38,12 +39,13 @@ struct SplitMesh {
 ///         | x | e                     | /   e
 ///         +---------end wall          +----------- end wall,
 ///
-/// so three blocks meet in the line o instead of four, and the walls in a line where each of two blocks takes half of the angle: one that may
-/// open to 180 degrees. Zones without sheets stay whole; others fall into what is left of them (which keeps the name), one zone per sheet
-/// (NAME_blade, NAME_wall; numbered where there are two). Patches and interfaces go on, in pieces where zones fall into several; each
-/// piece in one direction, as the file has them.
+/// so three blocks meet in the line o instead of four, and the walls in a line where each of two blocks takes half of
+/// the angle: one that may open to 180 degrees. Zones without sheets stay whole; others fall into what is left of them
+/// (which keeps the name), one zone per sheet (NAME_blade, NAME_wall; numbered where there are two). Patches and
+/// interfaces go on, in pieces where zones fall into several; each piece in one direction, as the file has them.
 ///
-/// Throws MeshError for zones with too few cells, and where interfaces cut sheets lengthwise. Cost O(zones + patches + interfaces).
+/// Throws MeshError for zones with too few cells, and where interfaces cut sheets lengthwise. Cost O(zones + patches +
+/// interfaces).
 SplitMesh split_corners(Mesh const& mesh, WallSheets const& sheets, SheetLayers const& layers);
 
 }  // namespace gridmorph

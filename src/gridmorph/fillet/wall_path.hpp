@@ -34,7 +34,8 @@ struct BallRow {
   /// The ball `steps` from one; none beyond an end.
   [[nodiscard]] Ball const* from(int number, int steps) const;
 
-  /// On the fillet: between the arcs of the stations around `station`, at a share of their ways from the middle to wall 0 or 1.
+  /// On the fillet: between the arcs of the stations around `station`, at a share of their ways from the middle to wall
+  /// 0 or 1.
   [[nodiscard]] Vec3 point(double station, int wall, double share) const;
   /// The normal there, into the mesh; zero where all around is sharp.
   [[nodiscard]] Vec3 normal(double station, int wall, double share) const;
@@ -65,13 +66,13 @@ struct CornerStation {
   void find_edges();
   /// Of the new corner.
   [[nodiscard]] WallPlace middle() const;
-  /// Of a node `layers` or more of a wall. It goes by arc length: with s that of the node, d what the fillet is shorter than the
-  /// corner (edge.arc - edge.way; 0 where it is sharp), g its share,
+  /// Of a node `layers` or more of a wall. It goes by arc length: with s that of the node, d what the fillet is shorter
+  /// than the corner (edge.arc - edge.way; 0 where it is sharp), g its share,
   ///
   ///     t = (s - d) - g (s_layers - d),
   ///
-  /// counted from the middle of the arc: over the fillet up to edge.way, then along the line, and beside it as its edge is, fading to
-  /// `reach`. Directions keep the lean of the lines along the corner.
+  /// counted from the middle of the arc: over the fillet up to edge.way, then along the line, and beside it as its edge
+  /// is, fading to `reach`. Directions keep the lean of the lines along the corner.
   [[nodiscard]] WallPlace place(int wall, int node, Vec3 const& off_wall) const;
 
  private:

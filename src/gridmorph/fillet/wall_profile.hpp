@@ -17,8 +17,9 @@ struct WallPoint {
 class WallProfile {
  public:
   WallProfile() = default;
-  /// Along the surface, in the plane across `across`, from `root` in the direction `up`; `normal`: into the mesh at `root`, in the plane; all unit.
-  /// Normals are those of the profile in its plane. Beyond rims it goes on in the tangent plane. Cost: some hundred feet.
+  /// Along the surface, in the plane across `across`, from `root` in the direction `up`; `normal`: into the mesh at
+  /// `root`, in the plane; all unit. Normals are those of the profile in its plane. Beyond rims it goes on in the
+  /// tangent plane. Cost: some hundred feet.
   WallProfile(FacetSurface const& surface, Vec3 const& root, Vec3 const& across, Vec3 const& up, Vec3 const& normal,
               double length);
 
@@ -42,8 +43,8 @@ struct SectionCircle {
   std::array<double, 2> contact{0, 0};  ///< along the profiles
 };
 
-/// The first one of a radius that touches both, c(s) = p(s) + r n(s) off the first at the distance r from the second, s by bisection; nothing where there
-/// is none before the end.
+/// The first one of a radius that touches both, c(s) = p(s) + r n(s) off the first at the distance r from the second, s
+/// by bisection; nothing where there is none before the end.
 std::optional<SectionCircle> circle_between(WallProfile const& first, WallProfile const& second, double radius);
 
 }  // namespace gridmorph

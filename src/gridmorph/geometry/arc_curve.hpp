@@ -7,8 +7,8 @@
 
 namespace gridmorph {
 
-/// A C1 cubic through points over the length s of their polygon, with slopes of the parabola through three of them; straight on beyond
-/// its ends. Two points at least, no two neighbours the same.
+/// A C1 cubic through points over the length s of their polygon, with slopes of the parabola through three of them;
+/// straight on beyond its ends. Two points at least, no two neighbours the same.
 class ArcCurve {
  public:
   explicit ArcCurve(std::vector<Vec3> points);

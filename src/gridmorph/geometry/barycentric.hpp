@@ -7,7 +7,8 @@
 
 namespace gridmorph {
 
-/// Weights of the corners of a triangle that give a point of its plane. Of a triangle without area those on its longer side.
+/// Weights of the corners of a triangle that give a point of its plane. Of a triangle without area those on its longer
+/// side.
 inline std::array<double, 3> barycentric(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
   Vec3 const ab = b - a, ac = c - a, ap = p - a;
   double const d00 = dot(ab, ab), d01 = dot(ab, ac), d11 = dot(ac, ac), d20 = dot(ap, ab), d21 = dot(ap, ac);

@@ -9,8 +9,8 @@ Value cubic_piece(Value const& a, Value const& b, Value const& slope_a, Value co
   return a + ((b - a) * t * t * (3 - 2 * t) + width * t * (1 - t) * ((1 - t) * slope_a - t * slope_b));
 }
 
-/// The piece from entry k to the next of the ascending values x_of(0) ... x_of(n - 1) that holds x; beyond them the first or the
-/// last. Cost O(log n).
+/// The piece from entry k to the next of the ascending values x_of(0) ... x_of(n - 1) that holds x; beyond them the
+/// first or the last. Cost O(log n).
 template <class XOf>
 int piece_at(int n, XOf const& x_of, double x) {
   int low = 0, high = n - 1;

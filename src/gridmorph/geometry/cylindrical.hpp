@@ -1,5 +1,5 @@
-// Positions and motions as a machine sees them: along its axis, away from it, and around it; in a linear cascade along the flow,
-// along the span, and along the pitch; in a plane across the axis away from it, along it, and around it.
+// Positions and motions as a machine sees them: along its axis, away from it, and around it; in a linear cascade along
+// the flow, along the span, and along the pitch; in a plane across the axis away from it, along it, and around it.
 #pragma once
 
 #include <gridmorph/geometry/axis.hpp>
@@ -15,18 +15,19 @@ struct MeridionalPoint {
   double radius = 0;
 };
 
-/// A displacement in cylindrical components: lengths, and an angle right-handed about the axis (linear cascades: a length along
-/// the pitch).
+/// A displacement in cylindrical components: lengths, and an angle right-handed about the axis (linear cascades: a
+/// length along the pitch).
 struct CylindricalMotion {
   double axial = 0;
   double radial = 0;
   double angle_rad = 0;
 };
 
-/// The frame of a machine's axis, or of a linear cascade: blades side by side along a straight line, what an annulus becomes when its
-/// radius grows without limit. There axial position, radius and angle are the positions along the axis (the way of the flow), along the
-/// span = pitch x axis, and along the pitch, all lengths from the origin. In a plane across the axis, whose flow goes in or out, axial
-/// position and radius change places: the one is the distance from the axis, the other the position along it.
+/// The frame of a machine's axis, or of a linear cascade: blades side by side along a straight line, what an annulus
+/// becomes when its radius grows without limit. There axial position, radius and angle are the positions along the axis
+/// (the way of the flow), along the span = pitch x axis, and along the pitch, all lengths from the origin. In a plane
+/// across the axis, whose flow goes in or out, axial position and radius change places: the one is the distance from
+/// the axis, the other the position along it.
 class CylindricalFrame {
  public:
   explicit CylindricalFrame(Axis const& axis)
@@ -62,7 +63,8 @@ class CylindricalFrame {
     double const r = norm(d - a * direction_);
     return plane_ ? MeridionalPoint{r, a} : MeridionalPoint{a, r};
   }
-  /// Length along the circumference per angle: the distance from the axis; 1 in a linear cascade, whose angles are lengths.
+  /// Length along the circumference per angle: the distance from the axis; 1 in a linear cascade, whose angles are
+  /// lengths.
   [[nodiscard]] double length_of_angle(Vec3 const& p) const {
     if (linear_) return 1;
     MeridionalPoint const m = meridional(p);

@@ -20,8 +20,8 @@ struct FacetBoxes {
   /// Corners of the facets, four or (the last is -1) three.
   FacetBoxes(std::vector<Vec3> const& points, std::vector<std::array<int, 4>> const& facets);
 
-  /// Calls look(facet) in about the order of the distances of the facets' boxes from p, as long as those are not larger than
-  /// limit(), the square of the best distance so far. Host.
+  /// Calls look(facet) in about the order of the distances of the facets' boxes from p, as long as those are not larger
+  /// than limit(), the square of the best distance so far. Host.
   template <class Look, class Limit>
   void for_each_nearer(Vec3 const& p, Look const& look, Limit const& limit) const {
     // One per level that was passed, and two.

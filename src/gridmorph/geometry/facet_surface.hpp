@@ -1,4 +1,5 @@
-// Smooth surfaces through the nodes of facets: structured patches of a mesh, or triangles and quadrilaterals from a file.
+// Smooth surfaces through the nodes of facets: structured patches of a mesh, or triangles and quadrilaterals from a
+// file.
 #pragma once
 
 #include <gridmorph/kernels/facet_surface.hpp>
@@ -10,8 +11,8 @@
 
 namespace gridmorph {
 
-/// Triangles and quadrilaterals as they stand in a file or a mesh. Points may be there several times, facets in any order
-/// and orientation.
+/// Triangles and quadrilaterals as they stand in a file or a mesh. Points may be there several times, facets in any
+/// order and orientation.
 struct FacetList {
   std::vector<Vec3> points;
   std::vector<std::array<std::int32_t, 4>> facets;  ///< numbers of points around the facet; [3] = -1: a triangle
@@ -23,7 +24,8 @@ struct FacetList {
 struct FacetOptions {
   /// Facets that meet at a larger angle meet at a crease: the surface is not smooth across it.
   double crease_angle_rad = 0.8;
-  /// Points closer than this times the size of the surface, and closer than a tenth of the edges that leave them, are one.
+  /// Points closer than this times the size of the surface, and closer than a tenth of the edges that leave them, are
+  /// one.
   double weld = 1e-7;
 };
 
@@ -33,11 +35,11 @@ struct FacetOptions {
 /// along a rim or crease), the derivative by chord length of the polynomial through up to five of its points, one-sided
 /// where the line ends. Elsewhere (triangles, poles, points with three or five facets) the normal is that of a height
 /// function fitted to the points around, cubic where there are enough of them (Cazals and Pouget 2005), and edges leave
-/// along their chord's projection on the tangent plane (PN triangles). Both give tangent planes to O(h^3) and better, so
-/// the surface is off a smooth one by O(h^4) where facets are quadrilaterals, by O(h^3) on triangles.
+/// along their chord's projection on the tangent plane (PN triangles). Both give tangent planes to O(h^3) and better,
+/// so the surface is off a smooth one by O(h^4) where facets are quadrilaterals, by O(h^3) on triangles.
 ///
-/// Numbering, order and orientation of the input change nothing: points and facets are brought into an order of their own
-/// first, by position. Explicit: no system of equations beyond the nine unknowns of a fit.
+/// Numbering, order and orientation of the input change nothing: points and facets are brought into an order of their
+/// own first, by position. Explicit: no system of equations beyond the nine unknowns of a fit.
 struct FacetSurface {
   std::vector<Vec3> points, normals, bends;
   std::vector<kernels::Facet> facets;

@@ -12,11 +12,12 @@
 
 namespace gridmorph {
 
-/// Finds points by position: within a tolerance, or with tolerance 0 the very same ones. Grows with every point that is added;
-/// for many points that are known beforehand match_points() and coincident_pairs() of mesh/ take less memory.
+/// Finds points by position: within a tolerance, or with tolerance 0 the very same ones. Grows with every point that is
+/// added; for many points that are known beforehand match_points() and coincident_pairs() of mesh/ take less memory.
 ///
-/// Points join the one that was added before them, so which points are one depends on the order where they lie closer together
-/// than the tolerance in chains; take it far below the distances between points that differ. Cost per call: O(1) then.
+/// Points join the one that was added before them, so which points are one depends on the order where they lie closer
+/// together than the tolerance in chains; take it far below the distances between points that differ. Cost per call:
+/// O(1) then.
 class PointNumbers {
  public:
   explicit PointNumbers(double tolerance) : tolerance_(tolerance) {}

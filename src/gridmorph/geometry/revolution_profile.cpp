@@ -1,4 +1,5 @@
-// Profiles of revolution from scattered nodes: sort, merge what is one point up to noise, thin, then slopes and curvatures.
+// Profiles of revolution from scattered nodes: sort, merge what is one point up to noise, thin, then slopes and
+// curvatures.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 
@@ -37,7 +38,8 @@ double interpolate(Point const* const* p, int n, double x) {
   return sum;
 }
 
-/// How far point i is off the polynomial through `each_side` points on both sides of it; -1 where they are not so many different ones.
+/// How far point i is off the polynomial through `each_side` points on both sides of it; -1 where they are not so many
+/// different ones.
 double off_polynomial(Points const& p, std::size_t i, std::size_t each_side) {
   if (i < each_side || i + each_side >= p.size()) return -1;
   std::array<Point const*, 6> beside{};
@@ -51,8 +53,8 @@ double off_polynomial(Points const& p, std::size_t i, std::size_t each_side) {
 }
 
 /// How far points typically lie off a curve through their neighbours. Where neighbours nearly coincide the chord
-/// between them tells, where they are far apart the cubic through four of them, where they lie in pairs the quintic through six; of
-/// the medians the smallest is taken, so that neither curvature nor amplified noise passes for noise.
+/// between them tells, where they are far apart the cubic through four of them, where they lie in pairs the quintic
+/// through six; of the medians the smallest is taken, so that neither curvature nor amplified noise passes for noise.
 double estimate_noise(Points const& p) {
   if (p.size() < least_for_statistics) return 0;
   std::vector<double> chord, cubic, quintic;
@@ -178,8 +180,8 @@ class Slopes {
     return s;
   }
 
-  /// After all(): second derivative at the lower and upper end of each piece: that of the local polynomial where the piece is smooth at
-  /// both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
+  /// After all(): second derivative at the lower and upper end of each piece: that of the local polynomial where the
+  /// piece is smooth at both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
   std::vector<double> curvatures(std::vector<double> const& slope) const {
     std::vector<double> c;
     for (int i = 0; i + 1 < n_; ++i) {
@@ -223,8 +225,9 @@ class Slopes {
     }
   }
 
-  /// Distance between points of a stencil at i, at least: points much closer together than their surroundings tell little of how the
-  /// wall goes on beside their noise, which their distance divides. What they do tell comes in by fitted().
+  /// Distance between points of a stencil at i, at least: points much closer together than their surroundings tell
+  /// little of how the wall goes on beside their noise, which their distance divides. What they do tell comes in by
+  /// fitted().
   double apart(int i) const {
     if (is_table()) return 0;
     constexpr int reach = 4;
@@ -232,8 +235,8 @@ class Slopes {
     return 0.4 * (p_[b].first - p_[a].first) / (b - a);
   }
 
-  /// Appends the points that a stencil at i may use on one side: up to `most`, up to and including the next kink, none of
-  /// them nearer than `apart` to the one before; but always the last before a kink or an end if there is no other.
+  /// Appends the points that a stencil at i may use on one side: up to `most`, up to and including the next kink, none
+  /// of them nearer than `apart` to the one before; but always the last before a kink or an end if there is no other.
   void reach(int i, int step, int most, double apart, Stencil& out) const {
     int last = i;
     for (int j = i + step, found = 0; j >= 0 && j < n_ && found < most; j += step) {
@@ -257,8 +260,8 @@ class Slopes {
     return {derivative(i, stencil), second_derivative(i, stencil)};
   }
 
-  /// A stencil and what it skips beside its points, nearer than they are apart: the nearest of them, which fix slope and curvature
-  /// in clusters of points, three on either side of point i and one on either side of the others.
+  /// A stencil and what it skips beside its points, nearer than they are apart: the nearest of them, which fix slope
+  /// and curvature in clusters of points, three on either side of point i and one on either side of the others.
   Stencil with_skipped(int i, Stencil const& stencil) const {
     constexpr int most = 3;
     Stencil all = stencil;
@@ -280,10 +283,11 @@ class Slopes {
     return all;
   }
 
-  /// Derivatives at point i of the polynomial through it, of the degree of the one through `stencil`, that fits all points best, each as
-  /// exactly as it can be: to the noise of points, and to what the next power that the polynomial lacks makes of its distance. Near
-  /// points then fix slope and curvature as well as their noise lets them, far ones how the wall goes on. Noise counts more than what is
-  /// lacking: a fit in another unit or about another axis, with another rounding, is the same.
+  /// Derivatives at point i of the polynomial through it, of the degree of the one through `stencil`, that fits all
+  /// points best, each as exactly as it can be: to the noise of points, and to what the next power that the polynomial
+  /// lacks makes of its distance. Near points then fix slope and curvature as well as their noise lets them, far ones
+  /// how the wall goes on. Noise counts more than what is lacking: a fit in another unit or about another axis, with
+  /// another rounding, is the same.
   Derivatives fitted(int i, Stencil const& stencil, Stencil all) const {
     constexpr double noise_counts = 100;
     double const x = p_[i].first, r = p_[i].second;
@@ -344,8 +348,9 @@ class Slopes {
     return sum;
   }
 
-  /// Second derivative at point i of the same polynomial. With divided differences q_j = (r_j - r_i) / (x_j - x_i), which
-  /// are r' at x_i plus (x - x_i) / 2 times r'' and so on, it is twice the derivative there of the polynomial through q.
+  /// Second derivative at point i of the same polynomial. With divided differences q_j = (r_j - r_i) / (x_j - x_i),
+  /// which are r' at x_i plus (x - x_i) / 2 times r'' and so on, it is twice the derivative there of the polynomial
+  /// through q.
   double second_derivative(int i, Stencil const& stencil) const {
     double sum = 0;
     for (int const j : stencil) {
@@ -364,8 +369,8 @@ class Slopes {
     return 2 * sum;
   }
 
-  /// Points on both sides: seven in the middle; five in all where a side is short, and up to seven while each one more says more
-  /// than noise.
+  /// Points on both sides: seven in the middle; five in all where a side is short, and up to seven while each one more
+  /// says more than noise.
   Stencil stencil(int i) const {
     constexpr int each_side = 3, least = 4;
     double const gap = apart(i);

@@ -126,7 +126,8 @@ std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 c
   if (before.empty()) return {};
   Correlation const c(before, after, weights);
   double const size = c.size();
-  // With singular values a >= b >= c of the sum, negative c where it mirrors, the two greatest eigenvalues are a + b + c and a - b - c.
+  // With singular values a >= b >= c of the sum, negative c where it mirrors, the two greatest eigenvalues are a + b +
+  // c and a - b - c.
   constexpr double mirrored = 1e-9, alone = 6e-5;
   if (!(size > 0) || c.determinant() < -mirrored * size * size * size) return {};
   auto const q = quaternions(c.sum);

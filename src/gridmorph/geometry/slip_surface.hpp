@@ -28,17 +28,17 @@ struct RevolutionProfile {
   double deviation = 0;           ///< largest |radius - profile(axial)| over the points it was built from
 
   /// Sorts, merges near-duplicates, estimates slopes. Between kinks a slope is the derivative of the polynomial through
-  /// up to seven neighbouring points (error of the profile of order h^6 at spacing h), or of one that fits more of them beside clusters
-  /// of points, weighted by their noise and distance; stencils never cross a kink,
-  /// and at one the smaller of the two one-sided slopes is taken, so that the profile does not overshoot there. A
-  /// constant radius comes back bit for bit.
+  /// up to seven neighbouring points (error of the profile of order h^6 at spacing h), or of one that fits more of them
+  /// beside clusters of points, weighted by their noise and distance; stencils never cross a kink, and at one the
+  /// smaller of the two one-sided slopes is taken, so that the profile does not overshoot there. A constant radius
+  /// comes back bit for bit.
   ///
   /// Throws MotionError, naming the place, when the points are not a function of the axial position: walls at constant
   /// axial position, two surfaces at once, or a surface that is not one of revolution. Cost O(n log n).
   static RevolutionProfile from_points(std::vector<std::pair<double, double>> axial_radius);
 
-  /// Slopes above 10 over more than a thousandth of its extent: a displacement along the radius is no way to come back to
-  /// such a wall, it carries nodes far along it.
+  /// Slopes above 10 over more than a thousandth of its extent: a displacement along the radius is no way to come back
+  /// to such a wall, it carries nodes far along it.
   [[nodiscard]] bool is_steep() const;
 
   /// Outside the knots the end slope is continued.
@@ -56,9 +56,9 @@ struct TurnedProfile {
   kernels::MeridionalFrame frame;
 
   /// Of points along one connected wall: radius over axial position where that is a function and not steep; otherwise
-  /// axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in which the slopes
-  /// are smallest. Throws MotionError when there is no such frame: a wall that turns by 180 degrees, two surfaces, or no
-  /// surface of revolution. Cost O(n log n).
+  /// axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in which the
+  /// slopes are smallest. Throws MotionError when there is no such frame: a wall that turns by 180 degrees, two
+  /// surfaces, or no surface of revolution. Cost O(n log n).
   static TurnedProfile from_points(std::vector<std::pair<double, double>> const& axial_radius);
 };
 

@@ -10,7 +10,8 @@
 
 namespace gridmorph {
 
-/// The point of the triangle a, b, c nearest to p (nearest_on_triangle of the kernels); exactly a corner where that is nearest.
+/// The point of the triangle a, b, c nearest to p (nearest_on_triangle of the kernels); exactly a corner where that is
+/// nearest.
 Vec3 closest_on_triangle(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c);
 
 /// The tree of boxes of surfaces of facets (FacetBoxes), around triangles, for searches among some of them too. Cost

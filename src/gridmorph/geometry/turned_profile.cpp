@@ -43,8 +43,8 @@ double steepest_piece(RevolutionProfile const& profile) {
   return most;
 }
 
-/// Points of two walls, taken by turns, make a line longer than every other of them does, or do not lie on it; points along
-/// one wall do neither.
+/// Points of two walls, taken by turns, make a line longer than every other of them does, or do not lie on it; points
+/// along one wall do neither.
 bool zigzags(RevolutionProfile const& profile) {
   constexpr std::size_t least = 16;
   auto const& knots = profile.knots;

@@ -17,7 +17,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Elements whose determinant is above this are not asked for their certificate: of 27 points one would be negative long before.
+/// Elements whose determinant is above this are not asked for their certificate: of 27 points one would be negative
+/// long before.
 constexpr double doubtful_determinant = 0.5;
 
 class Relaxation {
@@ -153,7 +154,8 @@ class Relaxation {
     find_middles();
   }
 
-  /// Rows of further nodes that are not on a boundary, by the corners that they follow; the elements around each row's node.
+  /// Rows of further nodes that are not on a boundary, by the corners that they follow; the elements around each row's
+  /// node.
   void find_middles() {
     UnstructuredPlan const& plan = prepared_.plan;
     if (plan.middle.size() == 0) return;
@@ -201,7 +203,8 @@ class Relaxation {
     return out;
   }
 
-  /// Pulls nodes between corners where elements are broken by them alone; from here on they keep what that added when they follow their corners.
+  /// Pulls nodes between corners where elements are broken by them alone; from here on they keep what that added when
+  /// they follow their corners.
   void pull_middles(Judged& now) {
     InterpolationOperator const& rows = prepared_.plan.middle;
     if (rows.size() == 0 || now.bad.empty()) return;

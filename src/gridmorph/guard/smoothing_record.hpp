@@ -17,18 +17,22 @@ struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 struct SmoothingMap;          ///< plan/smoothing_map.hpp
 
 struct FreezeOptions {
-  /// Directions of the boundary's displacement along which those recorded differ by less than this share of the largest are one.
+  /// Directions of the boundary's displacement along which those recorded differ by less than this share of the largest
+  /// are one.
   double least_share = 1e-3;
 };
 
-/// Records boundary displacements u_k with the meshes that a plan and then a guard made of them: smooth_shapes(), smooth_frozen(),
-/// relax_bad_elements(), morph_in_steps(), or the caller's own. map() is the linear function of u that fits the guard's shifts s_k best:
+/// Records boundary displacements u_k with the meshes that a plan and then a guard made of them: smooth_shapes(),
+/// smooth_frozen(), relax_bad_elements(), morph_in_steps(), or the caller's own. map() is the linear function of u that
+/// fits the guard's shifts s_k best:
 ///
-///   shift(u) = sum over d of (g_d . u) s_d,   the smallest sum over k of |shift(u_k) - s_k|^2, zero for u at right angles to all u_k
+///   shift(u) = sum over d of (g_d . u) s_d,   the smallest sum over k of |shift(u_k) - s_k|^2, zero for u at right
+///   angles to all u_k
 ///
-/// by the eigenvectors v_d and eigenvalues l_d of the products u_k . u_m (sums over boundary nodes): g_d = sum of v_d(k) u_k / l_d, s_d = sum of v_d(k) s_k. One displacement
-/// comes back to round-off, scaled ones scaled; of a sequence all steps share one map. What it does to displacements that no combination of those recorded makes is as good as
-/// their likeness: docs/quality.md has figures. Deterministic.
+/// by the eigenvectors v_d and eigenvalues l_d of the products u_k . u_m (sums over boundary nodes): g_d = sum of
+/// v_d(k) u_k / l_d, s_d = sum of v_d(k) s_k. One displacement comes back to round-off, scaled ones scaled; of a
+/// sequence all steps share one map. What it does to displacements that no combination of those recorded makes is as
+/// good as their likeness: docs/quality.md has figures. Deterministic.
 class SmoothingRecord {
  public:
   static constexpr int most = 32;  ///< displacements
@@ -38,8 +42,8 @@ class SmoothingRecord {
   explicit SmoothingRecord(PreparedMorph const& prepared);
   explicit SmoothingRecord(PreparedUnstructured const& prepared) : elements_(&prepared) {}
 
-  /// boundary: as for a Morpher; plain: what it makes; guarded: what a guard made of that. Throws ConfigError for other sizes, and for more than `most`.
-  /// Memory: 24 bytes per boundary node, 32 per node that the guard moved.
+  /// boundary: as for a Morpher; plain: what it makes; guarded: what a guard made of that. Throws ConfigError for other
+  /// sizes, and for more than `most`. Memory: 24 bytes per boundary node, 32 per node that the guard moved.
   void add(std::span<Vec3 const> boundary, Coordinates const& plain, Coordinates const& guarded);
 
   [[nodiscard]] int size() const { return int(recorded_.size()); }
@@ -60,8 +64,10 @@ class SmoothingRecord {
   std::vector<Recorded> recorded_;
 };
 
-/// The plan with what the guard makes of these boundary displacements as a part of it: smooth_frozen() around all cells of blocks that lose their shape in any of
-/// the meshes, with one displacement smooth_shapes(); relax_bad_elements(). Mesh: the plan's. Throws as SmoothingRecord::add(). Cost: a morph, a look at all cells and a smoothing per displacement.
+/// The plan with what the guard makes of these boundary displacements as a part of it: smooth_frozen() around all cells
+/// of blocks that lose their shape in any of the meshes, with one displacement smooth_shapes(); relax_bad_elements().
+/// Mesh: the plan's. Throws as SmoothingRecord::add(). Cost: a morph, a look at all cells and a smoothing per
+/// displacement.
 MorphPlan freeze_guard(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
                        std::span<std::vector<Vec3> const> boundaries, FreezeOptions const& options = {});
 

@@ -36,8 +36,8 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
         prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, options.plan, given);
     Coordinates moved(mesh.n_nodes());
     apply_on_host(Morpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
-    // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more bad
-    // elements.
+    // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more
+    // bad elements.
     (void)relax_bad_elements(now, topology, step_plan, moved, options.relax);
     now.coordinates = moved;
   }

@@ -12,8 +12,9 @@ struct Checksum {
   std::uint64_t bytes = 0;
 };
 
-/// What the program cksum prints of a file: the 32-bit CRC of POSIX.1 (cksum), of all bytes and their number, MSB first, polynomial
-/// 0x04C11DB7. Nothing of what is no ordinary file or cannot be read. Cost: reading the file; under half a nanosecond a byte.
+/// What the program cksum prints of a file: the 32-bit CRC of POSIX.1 (cksum), of all bytes and their number, MSB
+/// first, polynomial 0x04C11DB7. Nothing of what is no ordinary file or cannot be read. Cost: reading the file; under
+/// half a nanosecond a byte.
 std::optional<Checksum> posix_checksum(std::string const& path);
 
 }  // namespace gridmorph::io

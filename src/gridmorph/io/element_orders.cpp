@@ -9,7 +9,8 @@ namespace {
 
 using Order = std::span<std::uint8_t const>;
 
-// Mid nodes of edges follow the corners in the SIDS in the order of kernels/element_shape.hpp, then those of faces, then that of the volume.
+// Mid nodes of edges follow the corners in the SIDS in the order of kernels/element_shape.hpp, then those of faces,
+// then that of the volume.
 constexpr std::array<std::uint8_t, 10> gmsh_tetrahedron{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 constexpr std::array<std::uint8_t, 14> gmsh_pyramid{0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13};
 constexpr std::array<std::uint8_t, 18> gmsh_prism{0, 1, 2, 3, 4, 5, 6, 9, 7, 8, 10, 11, 12, 14, 13, 15, 17, 16};

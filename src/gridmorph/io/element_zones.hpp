@@ -15,9 +15,10 @@
 
 namespace gridmorph::io {
 
-/// Writes the zones of a mesh with their elements, patches and connections. Nodes, elements, faces and connections of a zone are numbered
-/// from its first node and first element on; zones may share them, as the copies of a passage in a wheel do. A zone with polyhedra is written
-/// by its faces, NGON_n and NFACE_n, as the standard asks for all of its elements then.
+/// Writes the zones of a mesh with their elements, patches and connections. Nodes, elements, faces and connections of a
+/// zone are numbered from its first node and first element on; zones may share them, as the copies of a passage in a
+/// wheel do. A zone with polyhedra is written by its faces, NGON_n and NFACE_n, as the standard asks for all of its
+/// elements then.
 class ElementZoneWriter {
  public:
   /// The mesh, in the order of its file and without coordinates, must outlive the writer.

@@ -7,9 +7,10 @@ namespace gridmorph::cgns {
 
 /// Gives flat zones their second node plane and their two symmetry patches "2-D plane".
 ///
-/// The second plane is the first one shifted by one typical cell (the square root of the mean cell area) along the missing
-/// direction: the coordinate axis along which the mesh is constant, otherwise the mean normal of its cells. Plane 0 of
-/// every flat zone is already in the coordinates. Problems: a surface that closes on itself, so that no direction is missing.
+/// The second plane is the first one shifted by one typical cell (the square root of the mean cell area) along the
+/// missing direction: the coordinate axis along which the mesh is constant, otherwise the mean normal of its cells.
+/// Plane 0 of every flat zone is already in the coordinates. Problems: a surface that closes on itself, so that no
+/// direction is missing.
 void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems);
 
 /// Node steps of the two axes of a flat zone's planes and of the step between the planes, in the flat arrays of a mesh.

@@ -7,7 +7,8 @@
 
 namespace gridmorph::cgns {
 
-/// Throws IoError unless the file exists, is readable and begins as a CGNS file does; ADF files are walked node by node.
+/// Throws IoError unless the file exists, is readable and begins as a CGNS file does; ADF files are walked node by
+/// node.
 FileFormat check_file(std::string const& path);
 
 /// Whether the file begins as a CGNS file does. Throws IoError unless it exists and can be read.

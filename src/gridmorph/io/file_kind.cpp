@@ -27,7 +27,8 @@ struct Ending {
   std::string_view ending, format;
 };
 
-/// Endings that stand for one thing. Names of PLOT3D files are free, so that only what is certainly something else counts.
+/// Endings that stand for one thing. Names of PLOT3D files are free, so that only what is certainly something else
+/// counts.
 constexpr std::array endings{
     Ending{"cgns", "CGNS"},       Ending{"adf", "CGNS"},       Ending{"h5", "CGNS"},
     Ending{"hdf", "CGNS"},        Ending{"hdf5", "CGNS"},      Ending{"su2", "SU2"},

@@ -18,17 +18,20 @@ constexpr bool holds_fields(MeshFormat format) { return format == MeshFormat::cg
 /// Whether a series of meshes over time goes into one output of a format.
 constexpr bool holds_series(MeshFormat format) { return format == MeshFormat::cgns || format == MeshFormat::openfoam; }
 
-/// By the first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the others counts as PLOT3D. Throws IoError as refuse_other_format() does.
+/// By the first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the others counts as
+/// PLOT3D. Throws IoError as refuse_other_format() does.
 MeshFormat mesh_format(std::string const& path);
 
-/// Whether there is a file or folder of that name, or an OpenFOAM case whose .foam file nobody made or whose latest time is meant.
+/// Whether there is a file or folder of that name, or an OpenFOAM case whose .foam file nobody made or whose latest
+/// time is meant.
 bool is_there(std::string const& path);
 
 /// Throws IoError that names the format of a file or folder of another program (Fluent, Exodus, STL,
 /// ...) and says how to convert it. What is recognised as nothing of the kind passes. Reads at most 256 kB.
 void refuse_other_format(std::string const& path);
 
-/// The format that the ending of a file name stands for ("VTK", "STL", "CGNS", ...); empty where it says nothing certain.
+/// The format that the ending of a file name stands for ("VTK", "STL", "CGNS", ...); empty where it says nothing
+/// certain.
 std::string_view format_of_ending(std::string_view path);
 
 }  // namespace gridmorph

@@ -9,12 +9,13 @@
 
 namespace gridmorph::io {
 
-/// Equal for two paths that are one file or folder, or would be: device and inode of what is there (links and hard links are the same file), else the
-/// canonical path.
+/// Equal for two paths that are one file or folder, or would be: device and inode of what is there (links and hard
+/// links are the same file), else the canonical path.
 std::string identity_of(std::filesystem::path const& path);
 
-/// The one list of files that have been opened to be read while this lives. Readers fill it themselves, by note(), also with what a file that they
-/// read leads to; OutputFile takes the place of none of them. For programs; in a library nobody asks, and nothing is noted.
+/// The one list of files that have been opened to be read while this lives. Readers fill it themselves, by note(), also
+/// with what a file that they read leads to; OutputFile takes the place of none of them. For programs; in a library
+/// nobody asks, and nothing is noted.
 class FilesRead {
  public:
   FilesRead();

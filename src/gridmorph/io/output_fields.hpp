@@ -33,20 +33,20 @@ struct ZoneSolutions {
 /// Of every zone of the layout. To be called before anything is written: the tree of a file in writing cannot be read.
 std::vector<ZoneSolutions> zone_solutions(cgns::File const& file, cgns::Layout const& layout);
 
-/// Adds arrays to the solution of a zone at one location. Viewers read one solution per location, the first, or those that
-/// FlowSolutionPointers name: the arrays go there. A solution of our own is made where there is none that can take them (of the whole
-/// zone, in this file). What the file has keeps its name and values.
+/// Adds arrays to the solution of a zone at one location. Viewers read one solution per location, the first, or those
+/// that FlowSolutionPointers name: the arrays go there. A solution of our own is made where there is none that can take
+/// them (of the whole zone, in this file). What the file has keeps its name and values.
 class SolutionWriter {
  public:
   /// own_name: of a solution of our own; another name is taken where that is taken. location: "Vertex" or "CellCenter".
-  /// dimensions: of the arrays, without rind planes. names: of all arrays to come; all get the prefix "Morph" where one of them is
-  /// taken.
+  /// dimensions: of the arrays, without rind planes. names: of all arrays to come; all get the prefix "Morph" where one
+  /// of them is taken.
   SolutionWriter(cgns::File& file, cgns::ZoneLayout const& zone, ZoneSolutions const& present,
                  std::string const& own_name, std::string const& location, std::vector<Index> dimensions,
                  std::vector<std::string> const& names);
   void add(std::string const& name, double const* values, FieldUnit unit) const;
-  /// The same for a difference of coordinates: data class, units and conversion as those of the coordinate, whose array, grid, zone
-  /// or base says them.
+  /// The same for a difference of coordinates: data class, units and conversion as those of the coordinate, whose
+  /// array, grid, zone or base says them.
   void add_displacement(std::string const& name, double const* values, int component) const;
 
  private:

@@ -126,7 +126,8 @@ std::string short_hash(std::string const& text) {
   return digits.data();
 }
 
-/// What the names of temporary files begin with that this machine makes for an output; the number of the process follows.
+/// What the names of temporary files begin with that this machine makes for an output; the number of the process
+/// follows.
 std::string temporary_prefix(fs::path const& output) {
   std::array<char, 256> host{};
   static_cast<void>(::gethostname(host.data(), host.size() - 1));
@@ -260,7 +261,8 @@ void OutputFile::commit() {
   struct stat present {
   }, own{};
   if (::stat(output_.c_str(), &present) == 0 && ::stat(temporary_.c_str(), &own) == 0) {
-    // Giving a file away may be forbidden; it then stays with who writes it. The mode comes last: a change of owner takes bits of it away.
+    // Giving a file away may be forbidden; it then stays with who writes it. The mode comes last: a change of owner
+    // takes bits of it away.
     bool const kept = (present.st_uid == own.st_uid && present.st_gid == own.st_gid) ||
                       ::chown(temporary_.c_str(), present.st_uid, present.st_gid) == 0;
     constexpr mode_t permissions = 0777, all_bits = 07777;

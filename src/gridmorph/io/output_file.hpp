@@ -14,17 +14,16 @@ struct PendingName;
 /// A temporary file beside the output, renamed onto it by commit() and removed otherwise.
 ///
 /// The temporary file is in the same folder, so that the rename is one step of the file system. An output that is a
-/// symbolic link is followed; one that is there already passes on its permissions and, where that is allowed, its owner. Nothing is
-/// forced to the disk's surface: after a power failure either file may be there.
+/// symbolic link is followed; one that is there already passes on its permissions and, where that is allowed, its
+/// owner. Nothing is forced to the disk's surface: after a power failure either file may be there.
 ///
-/// Temporary names are short (".gridmorph-<output>-<host>-<process>-<number>.part", the first two as hexadecimal digits), so that
-/// outputs may have names of any length. Those that processes of this machine left behind for the same output, killed before
-/// they could remove them, are removed.
+/// Temporary names are short (".gridmorph-<output>-<host>-<process>-<number>.part", the first two as hexadecimal
+/// digits), so that outputs may have names of any length. Those that processes of this machine left behind for the same
+/// output, killed before they could remove them, are removed.
 class OutputFile {
  public:
-  /// Creates the temporary file, empty. Throws IoError when there is no such folder or the output is there and no ordinary
-  /// file, MachineError when it cannot be written.
-  /// Of a file that has been read (FilesRead) IoError, too.
+  /// Creates the temporary file, empty. Throws IoError when there is no such folder or the output is there and no
+  /// ordinary file, MachineError when it cannot be written. Of a file that has been read (FilesRead) IoError, too.
   explicit OutputFile(std::string const& output);
   ~OutputFile();
   OutputFile(OutputFile const&) = delete;
@@ -35,16 +34,19 @@ class OutputFile {
 
   /// Fills the temporary file with the bytes of another. Throws IoError (input) or MachineError (disk full, ...).
   void copy_from(std::string const& input) const;
-  /// Makes the temporary file hold these bytes and nothing else. What takes the place of a longer text needs no more room on
-  /// the disk. Throws MachineError.
+  /// Makes the temporary file hold these bytes and nothing else. What takes the place of a longer text needs no more
+  /// room on the disk. Throws MachineError.
   void write(std::string_view bytes) const;
-  /// Makes sure that the temporary file can grow by that many bytes, and leaves it as long as it was. Throws MachineError.
+  /// Makes sure that the temporary file can grow by that many bytes, and leaves it as long as it was. Throws
+  /// MachineError.
   ///
-  /// Called before a library writes: HDF5 cannot close a file that it failed to write, and the CGNS library then mistakes
-  /// it for every file opened later. Only another program that fills the disk in between can still bring that about.
+  /// Called before a library writes: HDF5 cannot close a file that it failed to write, and the CGNS library then
+  /// mistakes it for every file opened later. Only another program that fills the disk in between can still bring that
+  /// about.
   void reserve(std::uint64_t bytes) const;
   void commit();
-  /// Makes the temporary file another name of what is there now, which put_back() gives the place again; false where nothing is there.
+  /// Makes the temporary file another name of what is there now, which put_back() gives the place again; false where
+  /// nothing is there.
   [[nodiscard]] bool hold_present() const;
   void put_back();
   /// Removes what is in the place of the output.
@@ -62,19 +64,20 @@ class OutputFiles {
   /// The next one, to be filled; throws as OutputFile does.
   OutputFile& add(std::string const& output) { return files_.emplace_back(output); }
   [[nodiscard]] std::size_t size() const { return files_.size(); }
-  /// In the order in which they came: what names others comes last. Where one cannot be put in place, what was in the place of those before it comes
-  /// back. Throws MachineError.
+  /// In the order in which they came: what names others comes last. Where one cannot be put in place, what was in the
+  /// place of those before it comes back. Throws MachineError.
   void commit();
 
  private:
   std::deque<OutputFile> files_;
 };
 
-/// Removes the temporary files of all outputs that are not committed, where a program ends without leaving its scopes. Does only what signal handlers may.
+/// Removes the temporary files of all outputs that are not committed, where a program ends without leaving its scopes.
+/// Does only what signal handlers may.
 void remove_pending_files();
 
-/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of all outputs that are not committed, and then end the process
-/// as they would have without. For programs, not for libraries; a signal that is ignored stays ignored.
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of all outputs that are not committed, and then
+/// end the process as they would have without. For programs, not for libraries; a signal that is ignored stays ignored.
 void remove_pending_on_signals();
 
 }  // namespace gridmorph::io

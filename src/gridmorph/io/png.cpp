@@ -56,8 +56,8 @@ long distance_from_zero(std::uint8_t const* bytes, std::size_t n) {
   return sum;
 }
 
-/// Rows as they are packed: each as it stands, less its left or less its upper neighbours, whichever differences are smallest; palettes
-/// go as they stand.
+/// Rows as they are packed: each as it stands, less its left or less its upper neighbours, whichever differences are
+/// smallest; palettes go as they stand.
 std::string filtered_rows(std::vector<std::uint8_t> const& pixels, std::size_t row, std::size_t pixel, bool plain) {
   std::size_t const rows = pixels.size() / row;
   std::string out(rows * (row + 1), '\0');

@@ -22,7 +22,8 @@ struct Picture {
   }
 };
 
-/// The bytes of the file. A picture of 256 colours or fewer has a palette. Packed by zlib, or stored where gridmorph is built without it.
+/// The bytes of the file. A picture of 256 colours or fewer has a palette. Packed by zlib, or stored where gridmorph is
+/// built without it.
 std::string png_bytes(Picture const& picture);
 
 /// The same as a URI that pages can hold: "data:image/png;base64,...".

@@ -9,8 +9,8 @@
 
 namespace gridmorph::io {
 
-/// Appends elements to a mesh, face by face. Those with the faces of a tetrahedron, pyramid, prism or hexahedron become one, in SIDS
-/// order; the others become polyhedra.
+/// Appends elements to a mesh, face by face. Those with the faces of a tetrahedron, pyramid, prism or hexahedron become
+/// one, in SIDS order; the others become polyhedra.
 class ElementsByFaces {
  public:
   explicit ElementsByFaces(Mesh& mesh) : mesh_(mesh) {}

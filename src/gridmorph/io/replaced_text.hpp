@@ -14,8 +14,9 @@ class ReplacedText {
 
   /// Bytes begin <= b < end become `by`.
   void replace(std::size_t begin, std::size_t end, std::string_view by);
-  /// The word (up to a blank, or the tag of an XML file) that begins at or behind `at`, which reads as `from`: text that reads back to the bits of `to`, or as it stands where that is `from`
-  /// bit by bit. Returns where the word ended.
+  /// The word (up to a blank, or the tag of an XML file) that begins at or behind `at`, which reads as `from`: text
+  /// that reads back to the bits of `to`, or as it stands where that is `from` bit by bit. Returns where the word
+  /// ended.
   std::size_t replace_word(std::size_t at, double from, double to);
   /// The bytes of a number in memory; `swapped`: in the other byte order.
   void replace_raw(std::size_t at, double to, bool swapped);

@@ -10,8 +10,9 @@
 
 namespace gridmorph {
 
-/// Adds the fields to the zones of a file that holds the mesh, in the order of the file (SolutionWriter says where). `present`: of
-/// every zone, or empty where there are no fields. Displacements are `morphed` minus the mesh's coordinates.
+/// Adds the fields to the zones of a file that holds the mesh, in the order of the file (SolutionWriter says where).
+/// `present`: of every zone, or empty where there are no fields. Displacements are `morphed` minus the mesh's
+/// coordinates.
 void write_fields(cgns::File& file, cgns::Layout const& layout, std::vector<io::ZoneSolutions> const& present,
                   Mesh const& mesh, Coordinates const& morphed, OutputFields const& fields);
 

@@ -7,8 +7,8 @@
 
 namespace gridmorph::io {
 
-/// Number in the mesh of each of n_nodes nodes of a file, in its order; -1 for those that no element does (centres of circles, ...). nodes:
-/// of all elements of the file; is_of_mesh(e): whether the mesh has element e. n_used: how many.
+/// Number in the mesh of each of n_nodes nodes of a file, in its order; -1 for those that no element does (centres of
+/// circles, ...). nodes: of all elements of the file; is_of_mesh(e): whether the mesh has element e. n_used: how many.
 template <class IsOfMesh>
 std::vector<Index32> used_nodes(CsrGraph const& nodes, std::size_t n_nodes, IsOfMesh const& is_of_mesh, Index& n_used) {
   std::vector<Index32> number(n_nodes, -1);

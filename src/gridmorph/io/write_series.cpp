@@ -31,8 +31,8 @@ std::string grid_name(std::size_t step, std::size_t steps) {
   return "GridCoordinates_" + std::string(std::to_string(steps).size() - number.size(), '0') + number;
 }
 
-/// A series of several steps is the user's, and cannot go on beside another one; solvers write one of a single step with
-/// steady solutions, which is replaced.
+/// A series of several steps is the user's, and cannot go on beside another one; solvers write one of a single step
+/// with steady solutions, which is replaced.
 void refuse_series(cgns::File const& file, cgns::Layout const& layout, std::size_t steps) {
   Problems problems;
   auto const refuse = [&](cgns::Node const& node) {

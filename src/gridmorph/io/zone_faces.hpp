@@ -12,8 +12,9 @@ namespace gridmorph::io {
 
 class ZoneFaces {
  public:
-  /// Corners alone: nodes amid the edges of second-order elements are on no face. Faces are numbered in the order of the elements that have
-  /// them first, their nodes as these see them from outside. Throws MeshError for a face of more than two elements. Cost O(n log n) in faces.
+  /// Corners alone: nodes amid the edges of second-order elements are on no face. Faces are numbered in the order of
+  /// the elements that have them first, their nodes as these see them from outside. Throws MeshError for a face of more
+  /// than two elements. Cost O(n log n) in faces.
   ZoneFaces(Mesh const& mesh, Zone const& zone);
 
   /// Nodes of the mesh around each face.

@@ -1,4 +1,5 @@
-// A displacement made of several: a mean, load cases with factors, and mode shapes that oscillate with amplitude, frequency and phase.
+// A displacement made of several: a mean, load cases with factors, and mode shapes that oscillate with amplitude,
+// frequency and phase.
 #pragma once
 
 #include <gridmorph/mapping/point_field.hpp>
@@ -19,12 +20,14 @@ struct Mode {
   double phase_turns = 0;  ///< of a full turn: 0.25 is 90 degrees
 };
 
-/// u(t) = mean + sum_j factor_j f_j + sum_k amplitude_k (cos(a_k) f_k - sin(a_k) g_k), a_k = 2 pi (harmonic_k t + phase_turns_k), t in
-/// periods: load cases j (speed, temperature, pressure), and of modes k the real part of (f + i g) exp(i a).
+/// u(t) = mean + sum_j factor_j f_j + sum_k amplitude_k (cos(a_k) f_k - sin(a_k) g_k), a_k = 2 pi (harmonic_k t +
+/// phase_turns_k), t in periods: load cases j (speed, temperature, pressure), and of modes k the real part of (f + i g)
+/// exp(i a).
 ///
-/// Modes and load cases on equal nodes and elements share one mapping, and stencils are kept: after the first time every further one costs
-/// O(nodes of the models) plus a lookup and some twenty multiply-adds per position. Elements turn with the sum of the modes
-/// on them. Memory: about 400 bytes per position. Evaluations may come from several threads.
+/// Modes and load cases on equal nodes and elements share one mapping, and stencils are kept: after the first time
+/// every further one costs O(nodes of the models) plus a lookup and some twenty multiply-adds per position. Elements
+/// turn with the sum of the modes on them. Memory: about 400 bytes per position. Evaluations may come from several
+/// threads.
 class ModalField {
  public:
   /// Throws ConfigError as PointField does.
@@ -33,8 +36,8 @@ class ModalField {
   ModalField(std::optional<StructuralModel> mean, std::vector<Mode> modes, FieldOptions options)
       : ModalField(std::move(mean), std::move(modes), {}, options) {}
 
-  /// Displacement at `periods` (time over period), one factor per load case; `iterates` as in PointField::evaluate. Throws MotionError
-  /// as PointField does.
+  /// Displacement at `periods` (time over period), one factor per load case; `iterates` as in PointField::evaluate.
+  /// Throws MotionError as PointField does.
   void at(double periods, std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
           bool iterates = false) const;
   /// PointField::held(), summed.

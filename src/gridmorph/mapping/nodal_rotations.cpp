@@ -50,8 +50,8 @@ std::vector<Vec3> nodal_rotations(StructuralModel const& model, std::span<Vec3 c
     }
     Frame const before = frame_of(x, n), after = frame_of(moved, n);
     if (before.area == 0 || after.area == 0) continue;
-    // I + H with H from differences, so that no displacement gives exactly the identity. The normal is that of the moved
-    // element; the tangents' changes are the displacement's own differences.
+    // I + H with H from differences, so that no displacement gives exactly the identity. The normal is that of the
+    // moved element; the tangents' changes are the displacement's own differences.
     Frame const change = frame_of(u, n);
     bool const still = change.a == Vec3{0, 0, 0} && change.b == Vec3{0, 0, 0};
     Vec3 const turned = still ? Vec3{0, 0, 0} : after.normal - before.normal;

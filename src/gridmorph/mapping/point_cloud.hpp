@@ -25,11 +25,11 @@ struct PointCloud {
   [[nodiscard]] std::string where(std::size_t point) const { return source + counted_in + std::to_string(line[point]); }
 };
 
-/// Reads a displacement file. Columns x, y, z, dx, dy, dz separated by commas, semicolons, tabs or blanks, in this order,
-/// or in any order and among others under a header line that names them (also CoordinateX ..., Points:0 ...,
-/// DisplacementX ..., Displacement:0 ..., in any case). With a header there may also be `id` (or `node`), a whole number
-/// that no other point has, and dx_im, dy_im, dz_im, the imaginary part of a complex mode. Blank lines and lines that
-/// begin with '#' are skipped.
+/// Reads a displacement file. Columns x, y, z, dx, dy, dz separated by commas, semicolons, tabs or blanks, in this
+/// order, or in any order and among others under a header line that names them (also CoordinateX ..., Points:0 ...,
+/// DisplacementX ..., Displacement:0 ..., in any case). With a header there may also be `id` (or `node`), a whole
+/// number that no other point has, and dx_im, dy_im, dz_im, the imaginary part of a complex mode. Blank lines and lines
+/// that begin with '#' are skipped.
 ///
 /// Throws ConfigError (file:line, what was found) for a missing or empty file, too few columns, numbers that cannot be
 /// read and values that are not finite; at most the first ten problems are listed. Cost O(size of the file).

@@ -1,5 +1,5 @@
-// Displacement at arbitrary positions from the nodes of a file: exact on them, mapped from the elements of the model where
-// it has them, and a local interpolation between points otherwise.
+// Displacement at arbitrary positions from the nodes of a file: exact on them, mapped from the elements of the model
+// where it has them, and a local interpolation between points otherwise.
 #pragma once
 
 #include <gridmorph/mapping/point_cloud.hpp>
@@ -14,8 +14,8 @@
 
 namespace gridmorph {
 
-/// How far the positions asked for were from the model, over all evaluations so far (each position once where stencils are
-/// kept).
+/// How far the positions asked for were from the model, over all evaluations so far (each position once where stencils
+/// are kept).
 struct MappingDistance {
   std::int64_t evaluated = 0;
   std::int64_t coincident = 0;    ///< took the displacement of a node as it stands in the file
@@ -30,13 +30,15 @@ struct MappingDistance {
       0;  ///< diagonal of the patches that take their displacement from the field, by expect(); 0: not known
 };
 
-/// How far models may lie from the patches that take their displacement from them, where FieldOptions::max_distance says nothing.
+/// How far models may lie from the patches that take their displacement from them, where FieldOptions::max_distance
+/// says nothing.
 struct MappingLimits {
   static constexpr double distance = 0.05;    ///< share of the patches' size
   static constexpr double far_beyond = 0.05;  ///< share of the nodes that lie beyond the edge by more than two spacings
   static constexpr double notable = 0.01;     ///< distances above this share are a warning
-  /// From this share of nodes on that coincide with points the file is a table of the mesh's own nodes: those that are far from any point
-  /// count as if they were beyond the edge. On thin blades, rows of one side alone leave the other side without an edge between.
+  /// From this share of nodes on that coincide with points the file is a table of the mesh's own nodes: those that are
+  /// far from any point count as if they were beyond the edge. On thin blades, rows of one side alone leave the other
+  /// side without an edge between.
   static constexpr double own_nodes = 0.2;
   static constexpr double whole_parts =
       0.25;  ///< and that share of its other nodes: a table that is thinned leaves few so far
@@ -47,8 +49,8 @@ struct MappingLimits {
 /// Whether the points are nodes of the mesh itself, and whole parts of it have none.
 [[nodiscard]] bool lacks_own_nodes(MappingDistance const& mapping);
 
-/// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours are
-/// twice as far apart as between nodes, so that on smooth fields this is about four times the error of the mapping.
+/// Leave-one-out: the displacement of nodes of the model, interpolated from the others, against their own. Neighbours
+/// are twice as far apart as between nodes, so that on smooth fields this is about four times the error of the mapping.
 struct MappingError {
   std::int64_t tried = 0;   ///< nodes; a sample of large models
   double max = 0, rms = 0;  ///< share of the largest displacement of the field
@@ -66,13 +68,13 @@ struct FieldOptions {
   bool keep = false;  ///< keep the stencil of every position, for evaluation of the same ones again and again
 };
 
-/// One or more displacement fields on the nodes of one model. A position within coincidence() of a node takes that node's
-/// displacement, bit for bit; else FacetMap maps it where the model has elements, and PointMap where it has none.
-/// Evaluations may come from several threads.
+/// One or more displacement fields on the nodes of one model. A position within coincidence() of a node takes that
+/// node's displacement, bit for bit; else FacetMap maps it where the model has elements, and PointMap where it has
+/// none. Evaluations may come from several threads.
 class PointField {
  public:
-  /// Throws ConfigError when two lines give one point different displacements (more than 1e-6 of the largest), when points
-  /// or displacements are not finite, or when elements have no area. Points given twice alike are kept once.
+  /// Throws ConfigError when two lines give one point different displacements (more than 1e-6 of the largest), when
+  /// points or displacements are not finite, or when elements have no area. Points given twice alike are kept once.
   PointField(PointCloud cloud, FieldOptions const& options);
   /// `further`: (fields)(nodes), more displacement fields on the nodes of the model, in units of the file.
   PointField(StructuralModel model, FieldOptions const& options, std::vector<std::vector<Vec3>> further = {});
@@ -99,8 +101,9 @@ class PointField {
   [[nodiscard]] std::string where(std::size_t node) const;  ///< "blade.csv:14"
   [[nodiscard]] std::vector<std::string> const& notes() const;
   [[nodiscard]] MappingDistance mapping() const;
-  /// These nodes will ask for their displacement: throws MotionError where the model lies elsewhere (MappingLimits), before any search of
-  /// theirs takes its time. `slack`: so much farther they may be [length]. Looks at 4000 of them, evenly; judge() knows all.
+  /// These nodes will ask for their displacement: throws MotionError where the model lies elsewhere (MappingLimits),
+  /// before any search of theirs takes its time. `slack`: so much farther they may be [length]. Looks at 4000 of them,
+  /// evenly; judge() knows all.
   void expect(std::span<Vec3 const> nodes, double slack = 0) const;
   /// Throws as expect() does, by all positions that were evaluated. Nothing where that was not called.
   void judge() const;

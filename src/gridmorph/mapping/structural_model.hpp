@@ -35,14 +35,15 @@ struct ModelFiles {
   std::optional<std::string> solution;  ///< CGNS: the FlowSolution_t with the displacement; else the first fit
 };
 
-/// Reads a model. Text files: read_point_cloud for the points, parse_elements for the elements. CGNS files (recognised by
-/// their first bytes): read_element_model. Throws ConfigError or IoError.
+/// Reads a model. Text files: read_point_cloud for the points, parse_elements for the elements. CGNS files (recognised
+/// by their first bytes): read_element_model. Throws ConfigError or IoError.
 StructuralModel read_structural_model(ModelFiles const& files);
 
-/// Elements as text: one per line, id, n1, n2, n3 for a triangle and id, n1, n2, n3, n4 for a quadrilateral, where n1 ...
-/// are ids of the model's nodes in order around the element. A quadrilateral that names its last node twice, or leaves n4
-/// empty, is a triangle. Separators, comments and an optional header as in displacement files. Throws one ConfigError that
-/// lists the first ten problems: lines cut short, nodes that are not there, nodes named twice, ids used twice.
+/// Elements as text: one per line, id, n1, n2, n3 for a triangle and id, n1, n2, n3, n4 for a quadrilateral, where n1
+/// ... are ids of the model's nodes in order around the element. A quadrilateral that names its last node twice, or
+/// leaves n4 empty, is a triangle. Separators, comments and an optional header as in displacement files. Throws one
+/// ConfigError that lists the first ten problems: lines cut short, nodes that are not there, nodes named twice, ids
+/// used twice.
 std::vector<StructuralFacet> parse_elements(std::string_view text, std::string const& source, PointCloud const& nodes);
 
 }  // namespace gridmorph

@@ -21,7 +21,8 @@ std::string_view trimmed(std::string_view text);
 /// More columns are no table of numbers by point, element or span.
 inline constexpr std::size_t most_columns = 1000;
 
-/// Splits one line; after most_columns fields the rest is one field more; blanks count as one separator however many there are, the others each end a field.
+/// Splits one line; after most_columns fields the rest is one field more; blanks count as one separator however many
+/// there are, the others each end a field.
 void split(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
 /// ';' or ',' where the line has one, else a blank (tabs count as blanks).
@@ -44,8 +45,8 @@ class Lines {
   std::int64_t number_ = 0;
 };
 
-/// A whole file. `what` names it in messages ("displacement file"). Throws ConfigError, also for what is no ordinary file (a pipe would
-/// block for ever) and for more than `most` bytes.
+/// A whole file. `what` names it in messages ("displacement file"). Throws ConfigError, also for what is no ordinary
+/// file (a pipe would block for ever) and for more than `most` bytes.
 std::string read_text_file(std::filesystem::path const& path, std::string_view what, std::uintmax_t most = UINTMAX_MAX);
 
 }  // namespace gridmorph::mapping

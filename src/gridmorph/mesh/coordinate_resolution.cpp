@@ -90,7 +90,8 @@ Decimal decimal(double v) {
 
 double decade_of(double v) { return std::floor(std::log10(v)); }
 
-/// Decimals of some numbers of a file, as far as they are as large as the largest of them and as far as they are smaller.
+/// Decimals of some numbers of a file, as far as they are as large as the largest of them and as far as they are
+/// smaller.
 struct Decimals {
   std::vector<int> last;  ///< exponents of the last one, of the large numbers
   int finest = std::numeric_limits<int>::max(), finest_of_small = finest;
@@ -129,7 +130,8 @@ double largest_coordinate(Mesh const& mesh, Zone const& zone) {
   return largest;
 }
 
-/// One unit of the last decimal of the largest coordinates where a file has few digits, and not because they are round; 0: it has many.
+/// One unit of the last decimal of the largest coordinates where a file has few digits, and not because they are round;
+/// 0: it has many.
 double last_decimal(Mesh const& mesh, Zone const& zone, CoordinateSample const& sample) {
   constexpr int least = 6;
   Decimals const d(sample);

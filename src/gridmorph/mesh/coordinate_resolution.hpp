@@ -1,4 +1,5 @@
-// How exactly the coordinates of a mesh are known: what every tolerance that compares places or displacements refers to.
+// How exactly the coordinates of a mesh are known: what every tolerance that compares places or displacements refers
+// to.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -8,7 +9,8 @@
 
 namespace gridmorph {
 
-/// What keeps coordinates: floating-point numbers are known relative to their size, decimals of a text file by their last one.
+/// What keeps coordinates: floating-point numbers are known relative to their size, decimals of a text file by their
+/// last one.
 struct CoordinatePrecision {
   double relative = 0;      ///< one unit in the last place of 1
   double last_decimal = 0;  ///< [length]; 0: the file has many
@@ -19,9 +21,9 @@ struct CoordinatePrecision {
   [[nodiscard]] double resolution() const { return at(extent); }
 };
 
-/// Of every zone: single precision where the file keeps them so, or where a file of double precision holds nothing else (converted
-/// ones); decimals where a text file has 6 to 12 digits; double precision otherwise. `extent` is that of the whole mesh. Looks at
-/// some two hundred nodes of each.
+/// Of every zone: single precision where the file keeps them so, or where a file of double precision holds nothing else
+/// (converted ones); decimals where a text file has 6 to 12 digits; double precision otherwise. `extent` is that of the
+/// whole mesh. Looks at some two hundred nodes of each.
 std::vector<CoordinatePrecision> coordinate_precisions(Mesh const& mesh);
 /// The coarsest of all zones.
 CoordinatePrecision coordinate_precision(Mesh const& mesh);
@@ -31,8 +33,8 @@ inline double coordinate_resolution(Mesh const& mesh) { return coordinate_precis
 /// The same for the coordinates of one zone.
 double coordinate_resolution(Mesh const& mesh, int zone);
 
-/// How far apart nodes may be that are one: `share` of a size, or what rounding makes of it where that is more. Both nodes are rounded,
-/// and the transform between periodic ones is fitted to rounded nodes.
+/// How far apart nodes may be that are one: `share` of a size, or what rounding makes of it where that is more. Both
+/// nodes are rounded, and the transform between periodic ones is fitted to rounded nodes.
 inline double place_tolerance(double share, double size, double resolution) {
   constexpr double roundings = 9;
   return std::max(share * size, roundings * resolution);
@@ -43,8 +45,8 @@ inline double coincidence_tolerance(double mesh_size, double resolution) {
   return place_tolerance(1e-8, mesh_size, resolution);
 }
 
-/// How much displacements may differ that one rule gives one place: it is asked at rounded places, and displacements of neighbours
-/// differ by no more than their distance or little more.
+/// How much displacements may differ that one rule gives one place: it is asked at rounded places, and displacements of
+/// neighbours differ by no more than their distance or little more.
 inline double displacement_tolerance(double share, double mesh_size, double resolution) {
   constexpr double roundings = 4;
   return std::max(share * mesh_size, roundings * resolution);

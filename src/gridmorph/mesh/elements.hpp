@@ -39,8 +39,8 @@ struct Polyhedra {
   CsrGraph faces;                 ///< nodes in order around each face, the normal pointing outwards
 };
 
-/// Where in its file each node and element stands, counted from 0 through all zones; empty: where it stands in the mesh. See
-/// file_order.hpp.
+/// Where in its file each node and element stands, counted from 0 through all zones; empty: where it stands in the
+/// mesh. See file_order.hpp.
 struct FileOrder {
   std::vector<Index32> node;     ///< (n_nodes) or empty
   std::vector<Index32> element;  ///< (n_elements) or empty

@@ -6,7 +6,8 @@
 
 namespace gridmorph {
 
-/// Larger coordinates are damage, or marks of nodes that were left out: squares of their distances leave the range of numbers.
+/// Larger coordinates are damage, or marks of nodes that were left out: squares of their distances leave the range of
+/// numbers.
 inline constexpr double coordinate_limit = 1e100;
 
 struct MeshExtent {

@@ -130,7 +130,8 @@ Mesh permuted(HostInstance const& host, Mesh const& mesh, FileOrder const& order
   return out;
 }
 
-/// Gives the zones those numbers of nodes, and everything that names nodes their new numbers; the mesh is in the order of its file.
+/// Gives the zones those numbers of nodes, and everything that names nodes their new numbers; the mesh is in the order
+/// of its file.
 void renumber(Mesh& mesh, std::vector<Index> const& n_nodes, std::vector<Index32> const& new_node) {
   Index first = 0;
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {

@@ -1,8 +1,9 @@
 // A mesh as it stands in a file: zones of blocks or of elements, boundary patches, connections, coordinates.
 //
 // Nothing here is cut, interpreted or repaired: what follows from it is found by `boundary` and `plan` (blocks) and by
-// unstructured_topology.hpp (elements). Readers fill a Mesh, writers take one, generators make one, and solvers can build one from their
-// own arrays without touching files. All numbers are 0-based; those of nodes and elements run through all zones.
+// unstructured_topology.hpp (elements). Readers fill a Mesh, writers take one, generators make one, and solvers can
+// build one from their own arrays without touching files. All numbers are 0-based; those of nodes and elements run
+// through all zones.
 #pragma once
 
 #include <gridmorph/core/index.hpp>
@@ -29,15 +30,16 @@ enum class PatchKind {
   degenerate,  ///< BCDegenerateLine, BCDegeneratePoint, BCAxisymmetricWedge: a face collapsed to a line or point
   connection,  ///< a connection that does not match node to node: abutting, overset, mixing plane
   other,       ///< BCGeneral, BCDirichlet, BCNeumann, BCExtrapolate, UserDefined, Null, none at all
-  periodic,  ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a file
+  periodic,    ///< one side of a periodic pair whose two sides move independently (passages of a wheel); never from a
+               ///< file
   region  ///< no boundary: cells or a grid surface inside the domain that a rule moves (regions.hpp); never from a file
 };
 
 /// "wall", "inflow", ... as used by `type:` selectors and in messages. Periodic interfaces are "periodic".
 std::string_view to_string(PatchKind kind);
 
-/// One boundary condition of one zone: a range on a face of a block, a list of faces of elements, or only a list of nodes where
-/// the file says no more.
+/// One boundary condition of one zone: a range on a face of a block, a list of faces of elements, or only a list of
+/// nodes where the file says no more.
 struct Patch {
   std::string name;     ///< BC_t or GridConnectivity_t node name, SU2 marker
   std::string bc_type;  ///< CGNS BCType_t name as in the file, resolved through the family if FamilySpecified
@@ -50,8 +52,8 @@ struct Patch {
   std::vector<Index32> nodes{};  ///< instead of faces, where the file lists nodes; ascending, each once
 };
 
-/// Periodicity as declared in the file (CGNS SIDS Periodic_t). `declared` maps this side's nodes onto the donor's nodes.
-/// Files carry the angle in single precision: fit the transform to the matched nodes before use.
+/// Periodicity as declared in the file (CGNS SIDS Periodic_t). `declared` maps this side's nodes onto the donor's
+/// nodes. Files carry the angle in single precision: fit the transform to the matched nodes before use.
 struct Periodic {
   Vec3 rotation_center;
   Vec3 rotation_angle_rad;  ///< about x, y, z
@@ -59,8 +61,8 @@ struct Periodic {
   RigidTransform declared;
 };
 
-/// Rotation about the line through `center` along `direction` (any length): own nodes onto the donor's. The three angles are those
-/// of the CGNS convention (about x, then y, then z).
+/// Rotation about the line through `center` along `direction` (any length): own nodes onto the donor's. The three
+/// angles are those of the CGNS convention (about x, then y, then z).
 Periodic periodic_rotation(Vec3 const& center, Vec3 const& direction, double angle_rad);
 Periodic periodic_translation(Vec3 const& translation);
 
@@ -75,7 +77,8 @@ struct Interface1to1 {
   std::optional<Periodic> periodic;
 };
 
-/// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one: GridConnectivity_t of elements.
+/// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one: GridConnectivity_t of
+/// elements.
 struct Connection {
   std::string name;
   std::vector<std::string> families;
@@ -96,7 +99,8 @@ struct Subset {
 /// A CGNS Zone_t: a block of nodes (i, j, k), or elements. An SU2 file is one zone of elements.
 struct Zone {
   std::string name;  ///< unique in the mesh; "Base/Zone" when the file has several bases
-  /// Blocks: nodes along i, j, k, each at least 2 (readers extrude 2-D zones to two planes, but not beside elements). Elements: 0.
+  /// Blocks: nodes along i, j, k, each at least 2 (readers extrude 2-D zones to two planes, but not beside elements).
+  /// Elements: 0.
   Index3 extent{0, 0, 0};
   Index first_node = 0;           ///< number of the zone's first node, (0, 0, 0) of a block, in the coordinate arrays
   bool single_precision = false;  ///< the file keeps this zone's coordinates in single precision
@@ -140,8 +144,8 @@ struct Coordinates {
 };
 
 struct Mesh {
-  /// Of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put back plane k = 0 only;
-  /// elements of a 2-D mesh are surfaces.
+  /// Of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put back plane k = 0
+  /// only; elements of a 2-D mesh are surfaces.
   int dimension = 3;
   std::vector<Zone> zones;
   Elements elements;                      ///< of all zones; of a mesh of blocks alone none
@@ -153,8 +157,8 @@ struct Mesh {
   std::vector<Subset> subsets;            ///< of elements, in file order; writers leave them to the file
   Coordinates coordinates;                ///< all three components, z = 0 where a file of elements has two
   std::string source;                     ///< file name or what made it, for messages
-  /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the writer;
-  /// empty otherwise.
+  /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the
+  /// writer; empty otherwise.
   std::string file_variant;
   std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
   int first_number = 1;            ///< of nodes of elements in messages: 1 in CGNS, 0 in SU2 files
@@ -179,7 +183,8 @@ struct Mesh {
   [[nodiscard]] double size() const;
 };
 
-/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone 'Fluid' node 17", as the file counts.
+/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone 'Fluid' node 17", as the file
+/// counts.
 std::string describe_node(Mesh const& mesh, Index node);
 /// "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
 std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range);

@@ -10,7 +10,8 @@
 namespace gridmorph {
 
 struct NodeGraph {
-  /// Smallest number among the nodes at the same point (nodes_at_one_place()): the one that carries the displacement of all of them.
+  /// Smallest number among the nodes at the same point (nodes_at_one_place()): the one that carries the displacement of
+  /// all of them.
   std::vector<Index32> representative;
   /// Representatives at the other ends of the edges of elements, ascending; empty for all other nodes.
   CsrGraph neighbours;

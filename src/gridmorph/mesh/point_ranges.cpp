@@ -105,7 +105,8 @@ std::optional<IndexMap> join_faces(FaceOfRange const& own, FaceOfRange const& do
     }
   orientation.sign[own.normal] = sign_of_normal;
 
-  // As the standard says, from Begin to Begin; where End then misses End, the donor range was written in ascending order.
+  // As the standard says, from Begin to Begin; where End then misses End, the donor range was written in ascending
+  // order.
   IndexMap const as_declared{orientation, from_one_to_zero(own.corners.begin), from_one_to_zero(donor.corners.begin)};
   IndexMap map{orientation, own.nodes.begin, as_declared(own.nodes.begin)};
   if (as_declared(from_one_to_zero(own.corners.end)) != from_one_to_zero(donor.corners.end)) {

@@ -19,10 +19,10 @@ struct PointRange {
 ///
 ///   donor index = T (own index - range.begin) + donor_range.begin
 ///
-/// with Transform[a] = +-d: a step along own axis a is one along donor axis d = 1, 2, 3, forwards or backwards (CGNS SIDS). A single
-/// zero in Transform is rebuilt; the sign of the face normal is not needed to match nodes and may be either. Where donor_range does
-/// not end where Transform says, it is taken as a range without direction. `periodic` may be set afterwards.
-/// Throws MeshError: ranges that are not on a face of their zone, or do not fit each other.
+/// with Transform[a] = +-d: a step along own axis a is one along donor axis d = 1, 2, 3, forwards or backwards (CGNS
+/// SIDS). A single zero in Transform is rebuilt; the sign of the face normal is not needed to match nodes and may be
+/// either. Where donor_range does not end where Transform says, it is taken as a range without direction. `periodic`
+/// may be set afterwards. Throws MeshError: ranges that are not on a face of their zone, or do not fit each other.
 Interface1to1 interface_from_ranges(Mesh const& mesh, std::string name, int zone, PointRange const& range,
                                     int donor_zone, PointRange const& donor_range, std::array<int, 3> const& transform);
 
@@ -35,12 +35,13 @@ struct FaceOfRange {
   int normal;
 };
 
-/// The index map from one face to the other. `why`: what is wrong where there is none, else what was assumed, or nothing.
+/// The index map from one face to the other. `why`: what is wrong where there is none, else what was assumed, or
+/// nothing.
 std::optional<IndexMap> join_faces(FaceOfRange const& own, FaceOfRange const& donor, std::array<int, 3> transform,
                                    std::string& why);
 
-/// +1 where a step out of the own zone through its face leads into the donor at growing index, -1 where at falling index; as a factor
-/// on the own step.
+/// +1 where a step out of the own zone through its face leads into the donor at growing index, -1 where at falling
+/// index; as a factor on the own step.
 int sign_through(IndexRange const& own, int own_normal, IndexRange const& donor, int donor_normal);
 
 /// Whether the entries are +-1, +-2, +-3 in some order; fills o.

@@ -18,13 +18,15 @@ struct TouchingPatches {
   bool one = false;                  ///< all of them are near enough to be one (nodes_at_one_place())
 };
 
-/// All such pairs, by position within `tolerance`. Only patches with equally many nodes are looked at; n log n in their nodes.
+/// All such pairs, by position within `tolerance`. Only patches with equally many nodes are looked at; n log n in their
+/// nodes.
 std::vector<TouchingPatches> undeclared_connections(Mesh const& mesh, double tolerance);
 
-/// For each node the smallest number among the nodes that are one with it: those that coincident_nodes() declares, and nodes of
-/// patches of different zones closer than 1e-8 of the mesh size (or what the precision of its coordinates allows, coordinate_resolution.hpp). Nodes of connections that do not
-/// match node to node (sliding planes, overset) are left as they are declared, and so are nodes of different `groups` (one number per
-/// node; empty: all alike), as the two sides of a mixing plane between blade rows. n log n in the nodes of patches.
+/// For each node the smallest number among the nodes that are one with it: those that coincident_nodes() declares, and
+/// nodes of patches of different zones closer than 1e-8 of the mesh size (or what the precision of its coordinates
+/// allows, coordinate_resolution.hpp). Nodes of connections that do not match node to node (sliding planes, overset)
+/// are left as they are declared, and so are nodes of different `groups` (one number per node; empty: all alike), as
+/// the two sides of a mixing plane between blade rows. n log n in the nodes of patches.
 std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& mesh, std::span<int const> groups = {});
 inline std::vector<Index32> nodes_at_one_place(Mesh const& mesh) { return nodes_at_one_place(HostInstance(), mesh); }
 

@@ -192,8 +192,8 @@ class MeshCheck {
     }
   }
 
-  /// Every polyhedron is one closed surface. Where a face is missing there is no volume to measure; of a second shell, a void in the cell or
-  /// a part beside it, nobody knows which side is inside.
+  /// Every polyhedron is one closed surface. Where a face is missing there is no volume to measure; of a second shell,
+  /// a void in the cell or a part beside it, nobody knows which side is inside.
   void polyhedra() {
     auto const& p = mesh_.polyhedra;
     Index open = 0, parted = 0, first_open = -1, first_parted = -1;
@@ -213,7 +213,8 @@ class MeshCheck {
         "cells with voids or of separate parts cannot be measured; split them in the mesh generator");
   }
 
-  /// Edges that an odd number of faces have lie on a hole, unless nodes of smaller neighbours lie on them: then the area vectors close.
+  /// Edges that an odd number of faces have lie on a hole, unless nodes of smaller neighbours lie on them: then the
+  /// area vectors close.
   [[nodiscard]] bool is_open(std::size_t polyhedron) const {
     auto const& p = mesh_.polyhedra;
     std::uint64_t odd = 0;

@@ -14,8 +14,8 @@ namespace gridmorph {
 
 /// Number of sides of an element: faces in 3-D, edges in 2-D.
 int n_sides(Mesh const& mesh, Index element);
-/// Corner nodes of one side, the normal pointing outwards; each once, so that collapsed sides have fewer. `room` holds them
-/// unless the element is a polyhedron.
+/// Corner nodes of one side, the normal pointing outwards; each once, so that collapsed sides have fewer. `room` holds
+/// them unless the element is a polyhedron.
 std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
                                     std::array<Index32, max_face_corners>& room);
 
@@ -27,8 +27,8 @@ struct MiddleNode {
 /// Those amid its edges, then the one amid the side where the element has such nodes.
 std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side);
 
-/// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the mean
-/// normal of its elements. (0, 0, 1) for a 3-D mesh.
+/// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the
+/// mean normal of its elements. (0, 0, 1) for a 3-D mesh.
 Vec3 plane_normal(Mesh const& mesh);
 
 /// All nodes of a patch, ascending, each once.
@@ -44,7 +44,8 @@ Index node_number_in_file(Mesh const& mesh, Index node);
 Index number_in_file(Mesh const& mesh, Index element);
 
 /// Checks what readers and generators must guarantee: node and element ranges, node numbers inside their zone, as many
-/// nodes as a type asks for, no node twice in a corner list of patches. Throws MeshError that lists all problems. Linear cost.
+/// nodes as a type asks for, no node twice in a corner list of patches. Throws MeshError that lists all problems.
+/// Linear cost.
 void check_mesh(Mesh const& mesh);
 
 }  // namespace gridmorph

@@ -11,7 +11,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts once.
+/// Lists of the items that name a key, ascending, from the keys of each item; an item that names a key twice counts
+/// once.
 template <class KeysOf>
 CsrGraph invert(HostInstance const& host, char const* label, Index n_keys, Index n_items, KeysOf const& keys_of) {
   detail::IndexBuckets<Index32> const buckets(host, label, n_items, n_keys, [&](Index i, auto const& put) {
@@ -162,8 +163,8 @@ struct InnerSide {
   std::array<Index32, 2> element{-1, -1}, side{-1, -1};
 };
 
-/// Sides inside the mesh that walls list, each once; they become boundary. Files list other things inside meshes too, such as where a periodic
-/// side comes again.
+/// Sides inside the mesh that walls list, each once; they become boundary. Files list other things inside meshes too,
+/// such as where a periodic side comes again.
 std::vector<InnerSide> open_inner_sides(Mesh const& mesh, UnstructuredTopology& topology) {
   std::vector<InnerSide> out;
   std::array<Index32, max_face_corners> room{};

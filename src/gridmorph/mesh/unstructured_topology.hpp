@@ -1,6 +1,6 @@
-// What follows from the lists of an unstructured mesh: elements around nodes, neighbours, boundary faces, the patches they
-// belong to, coincident nodes. Everything is gathered (each entry written once, by its own loop index), so the results do
-// not depend on the number of threads. Host; linear cost.
+// What follows from the lists of an unstructured mesh: elements around nodes, neighbours, boundary faces, the patches
+// they belong to, coincident nodes. Everything is gathered (each entry written once, by its own loop index), so the
+// results do not depend on the number of threads. Host; linear cost.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -39,16 +39,18 @@ struct BoundaryFaces {
   std::vector<Index32> element;  ///< the one they belong to
   std::vector<Index32> side;     ///< which of its sides
   std::vector<Index32> across;   ///< the face behind a connection, periodic ones too; -1: none
-  /// The connection: 2 c where the face has nodes of Mesh::connections[c], 2 c + 1 where it has donor nodes of it; -1: none.
+  /// The connection: 2 c where the face has nodes of Mesh::connections[c], 2 c + 1 where it has donor nodes of it; -1:
+  /// none.
   std::vector<Index32> connection;
-  /// Of baffles and other surfaces inside the mesh that patches list: the face on the other side, with the same nodes; -1: none. Empty where the mesh has
-  /// no such surfaces.
+  /// Of baffles and other surfaces inside the mesh that patches list: the face on the other side, with the same nodes;
+  /// -1: none. Empty where the mesh has no such surfaces.
   std::vector<Index32> behind;
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 
-/// All of it. The mesh must have passed check_mesh(). Faces that walls list inside the mesh, where elements on both sides have the same nodes (createBaffles of
-/// OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are boundary: its elements are no neighbours there.
+/// All of it. The mesh must have passed check_mesh(). Faces that walls list inside the mesh, where elements on both
+/// sides have the same nodes (createBaffles of OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are
+/// boundary: its elements are no neighbours there.
 struct UnstructuredTopology {
   CsrGraph elements_of_nodes;
   ElementSides sides;
@@ -60,8 +62,8 @@ struct UnstructuredTopology {
 UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh);
 inline UnstructuredTopology make_topology(Mesh const& mesh) { return make_topology(HostInstance(), mesh); }
 
-/// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none. Of a surface inside the
-/// mesh either side; the other one is behind it.
+/// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
+/// Of a surface inside the mesh either side; the other one is behind it.
 Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
 
 /// Which patch each boundary face belongs to.
@@ -75,12 +77,12 @@ struct BoundaryFacePatches {
   std::vector<std::string> notes;     ///< faces of patches inside the mesh, ...
 };
 
-/// A face belongs to the patch that lists it. Patches given as nodes get the faces all of whose corners they list and that
-/// no patch of faces has; where several do, the one with fewest nodes, then the first in the file.
+/// A face belongs to the patch that lists it. Patches given as nodes get the faces all of whose corners they list and
+/// that no patch of faces has; where several do, the one with fewest nodes, then the first in the file.
 BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology const& topology);
 
-/// For each node the smallest number among the nodes that connections (periodic ones left out) declare to be the same point;
-/// its own number where there is none.
+/// For each node the smallest number among the nodes that connections (periodic ones left out) declare to be the same
+/// point; its own number where there is none.
 std::vector<Index32> coincident_nodes(Mesh const& mesh);
 
 /// (n_nodes) 1 for nodes that a periodic connection pairs.

@@ -41,10 +41,10 @@ struct VectorLayout {
 ///   three View<T*> of one stride, or a struct of such Views x, y, z, as Coordinates is
 ///   per zone of blocks a View<T****> (i, j, k, 3), or a struct of three View<T***> (i, j, k) of the same strides
 ///
-/// with T double or float. Zones may be allocated apart; ghost layers and padding are left out by subviews, which keep their
-/// strides. Nothing is copied but, once, a table with 80 bytes per zone. The caller's Views must outlive what is made from them.
-/// Extents that do not fit are a ConfigError with both numbers; Views out of reach of the memory space, or of other types, do not
-/// compile.
+/// with T double or float. Zones may be allocated apart; ghost layers and padding are left out by subviews, which keep
+/// their strides. Nothing is copied but, once, a table with 80 bytes per zone. The caller's Views must outlive what is
+/// made from them. Extents that do not fit are a ConfigError with both numbers; Views out of reach of the memory space,
+/// or of other types, do not compile.
 template <class MemorySpace, bool ReadOnly>
 class BasicVectorView {
  public:

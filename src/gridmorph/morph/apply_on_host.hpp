@@ -8,7 +8,8 @@
 
 namespace gridmorph {
 
-/// positions() on the default host instance; waits. boundary: of all boundary nodes of the plan; moved: as many nodes as the mesh.
+/// positions() on the default host instance; waits. boundary: of all boundary nodes of the plan; moved: as many nodes
+/// as the mesh.
 inline void apply_on_host(Morpher<Kokkos::DefaultHostExecutionSpace> const& morpher, std::span<Vec3 const> boundary,
                           Coordinates& moved) {
   Kokkos::DefaultHostExecutionSpace const exec;

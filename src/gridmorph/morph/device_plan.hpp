@@ -1,5 +1,5 @@
-// The tables of a plan in one memory space: those of all stages and finalize passes one after another, numbers shifted to
-// match, with what a morph needs for work besides.
+// The tables of a plan in one memory space: those of all stages and finalize passes one after another, numbers shifted
+// to match, with what a morph needs for work besides.
 #pragma once
 
 #include <gridmorph/core/enqueue_copy.hpp>
@@ -92,7 +92,8 @@ struct JoinedTables {
   std::vector<kernels::VolumeTerm> terms;
 };
 
-/// How near fields turn, and what their turn needs for work (kernels/root_turn.hpp, turned_ends.hpp). Empty where none does.
+/// How near fields turn, and what their turn needs for work (kernels/root_turn.hpp, turned_ends.hpp). Empty where none
+/// does.
 template <class Exec>
 struct DeviceTurns {
   using Memory = typename Exec::memory_space;

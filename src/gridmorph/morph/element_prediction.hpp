@@ -10,8 +10,8 @@
 namespace gridmorph {
 
 struct ElementPredictionOptions {
-  /// One element in so many, in the order of the mesh (along a Hilbert curve), is looked at; 1: all. 0: the smallest power of two that
-  /// leaves at most 20,000.
+  /// One element in so many, in the order of the mesh (along a Hilbert curve), is looked at; 1: all. 0: the smallest
+  /// power of two that leaves at most 20,000.
   int every = 0;
   /// Those with the largest relative displacements that are looked at as well.
   Index most_strained = 20'000;
@@ -45,11 +45,12 @@ struct ElementPrediction {
   std::vector<PredictedRegion> regions;  ///< with elements looked at, that which keeps the smallest share first
 };
 
-/// Compares the displaced nodes of a plan with the baseline. Looked at are all elements between the end of a column and what is beyond, those with the
-/// largest relative displacements, and one in `every`. Largest relative displacements are those of all elements; of the elements
-/// looked at all measures are what Morpher::positions() makes, so that others can come out worse, and what the guard then
-/// mends is not in it. displaced: all nodes; signs: numbering_signs() of the mesh. Cost: one pass over the elements for their
-/// relative displacements (100 flops each), two sets of measures for those looked at. The same for any number of threads. Fences.
+/// Compares the displaced nodes of a plan with the baseline. Looked at are all elements between the end of a column and
+/// what is beyond, those with the largest relative displacements, and one in `every`. Largest relative displacements
+/// are those of all elements; of the elements looked at all measures are what Morpher::positions() makes, so that
+/// others can come out worse, and what the guard then mends is not in it. displaced: all nodes; signs:
+/// numbering_signs() of the mesh. Cost: one pass over the elements for their relative displacements (100 flops each),
+/// two sets of measures for those looked at. The same for any number of threads. Fences.
 ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUnstructured const& prepared,
                           Coordinates const& displaced, std::span<signed char const> signs,
                           ElementPredictionOptions const& options = {});

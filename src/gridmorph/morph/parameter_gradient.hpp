@@ -16,9 +16,10 @@ using ParametricMotion = std::function<Motion(std::span<double const> p)>;
 ///
 ///   db/dp_k = (b(p + h_k e_k) - b(p - h_k e_k)) / (2 h_k)
 ///
-/// by centred differences of the rules alone, whatever they are: sections, targets, fields. Exact to round-off where b is linear or quadratic in p_k, else with an error
-/// of order h_k^2. steps: h_k, positive; about 1e-5 of what p_k is of. dJ_db: one for each of MorphPlan::boundary_nodes(). Throws ConfigError where lengths do not
-/// fit or a step is not positive, MotionError. Cost: two evaluations of the rules per parameter; no mesh is morphed.
+/// by centred differences of the rules alone, whatever they are: sections, targets, fields. Exact to round-off where b
+/// is linear or quadratic in p_k, else with an error of order h_k^2. steps: h_k, positive; about 1e-5 of what p_k is
+/// of. dJ_db: one for each of MorphPlan::boundary_nodes(). Throws ConfigError where lengths do not fit or a step is not
+/// positive, MotionError. Cost: two evaluations of the rules per parameter; no mesh is morphed.
 std::vector<double> parameter_gradient(MorphPlan const& plan, ParametricMotion const& motion,
                                        std::span<double const> parameters, std::span<double const> steps,
                                        std::span<Vec3 const> dJ_db);

@@ -16,8 +16,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Patches whose nodes are all paired by periodic connections (SU2 markers are, always) would be fixed by default, against what
-/// the connection says: those that no rule names get the rule `free` instead, after all others.
+/// Patches whose nodes are all paired by periodic connections (SU2 markers are, always) would be fixed by default,
+/// against what the connection says: those that no rule names get the rule `free` instead, after all others.
 Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vector<std::string>& notes) {
   if (motion.strict) return motion;
   Mesh const& mesh = boundary.mesh();
@@ -53,8 +53,9 @@ bool fits_connections(Rule const& rule) {
          std::holds_alternative<FunctionRule>(rule);
 }
 
-/// Files that list a periodic boundary twice, as patches and as a connection: a rule that names a patch there is one of the connection, and so holds
-/// for both sides, whichever of them is named. Patches on both sides with different rules keep these.
+/// Files that list a periodic boundary twice, as patches and as a connection: a rule that names a patch there is one of
+/// the connection, and so holds for both sides, whichever of them is named. Patches on both sides with different rules
+/// keep these.
 class RulesOfConnections {
  public:
   RulesOfConnections(Boundary const& boundary, ResolvedMotion& motion)
@@ -125,8 +126,8 @@ class RulesOfConnections {
     given_.push_back({c, rule});
   }
 
-  /// Connections of the same periodicity that no patch lists: rows of elements beyond the sides that belong to the passage behind, and what they are
-  /// copies of. They move with the sides.
+  /// Connections of the same periodicity that no patch lists: rows of elements beyond the sides that belong to the
+  /// passage behind, and what they are copies of. They move with the sides.
   void give_to_halos() {
     std::set<Index> of_sides;
     for (std::size_t p = 0; p < is_side_.size(); ++p)
@@ -265,7 +266,8 @@ class Finder {
         out_.sliding_patches.push_back(int(p));
   }
 
-  /// Patches of no kind are walls as far as anyone knows, but for those that their rule makes the ends or sides of a blade row.
+  /// Patches of no kind are walls as far as anyone knows, but for those that their rule makes the ends or sides of a
+  /// blade row.
   [[nodiscard]] bool is_wall(int p) const {
     Rule const& rule = rules().patch_rule(p);
     if (std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule))
@@ -360,8 +362,8 @@ class Finder {
     return at < 0 ? std::span<Index32 const>{} : surfaces_at_[at];
   }
 
-  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement, and what they are held on
-  /// together.
+  /// Nodes joined by free periodic connections, with the rotation from the one that carries their displacement, and
+  /// what they are held on together.
   void find_images() {
     struct Link {
       Index32 to;

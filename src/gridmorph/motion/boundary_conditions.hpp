@@ -19,7 +19,8 @@ struct PeriodicImage {
   std::int32_t rotation = -1;  ///< number in BoundaryConditions::rotations; -1: none
 };
 
-/// The surfaces that nodes are held on which move as one: of each entry those of its node, then those of its periodic images.
+/// The surfaces that nodes are held on which move as one: of each entry those of its node, then those of its periodic
+/// images.
 struct JointSlip {
   std::vector<Index32> of;       ///< per entry: the node, or its slot in BoundaryConditions::known
   std::vector<Index> first{0};   ///< (entries + 1)
@@ -57,8 +58,8 @@ struct BoundaryConditions {
   };
   std::vector<OnSlipPatch> given_on_slip;
   JointSlip given_slip;  ///< what puts these back, of slots
-  JointSlip
-      joint_slip;  ///< what the mean of periodic images is held on, of their owners and of nodes where periodic sides meet
+  JointSlip joint_slip;  ///< what the mean of periodic images is held on, of their owners and of nodes where periodic
+                         ///< sides meet
   /// Directions in which nodes do not move where periodic sides meet in their axis; of kind axial.
   std::vector<SlipSurface> across_axes;
 
@@ -78,13 +79,15 @@ enum class Displacements {
   any            ///< others to come: every rule but `fixed` moves its walls
 };
 
-/// For every node 0, or the number of the blade row with which a circumferential-slide rule lets it slide: both sides of a mixing plane
-/// between rows may have the same nodes and move apart (nodes_at_one_place()). Empty where no rule slides.
+/// For every node 0, or the number of the blade row with which a circumferential-slide rule lets it slide: both sides
+/// of a mixing plane between rows may have the same nodes and move apart (nodes_at_one_place()). Empty where no rule
+/// slides.
 std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion);
 
-/// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field; empty:
-/// every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now, all that could do.
-/// Regions are patches behind those of the mesh (regions_of_elements()): all of their nodes are known, and none drives. Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
+/// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field;
+/// empty: every patch that moves and is no inflow, outflow, farfield or symmetry. Where no rule displaces anything now,
+/// all that could do. Regions are patches behind those of the mesh (regions_of_elements()): all of their nodes are
+/// known, and none drives. Throws MotionError when no wall moves, and the errors of resolve() and BoundaryMotion.
 BoundaryConditions boundary_conditions(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                                        BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                                        Motion const& motion, std::vector<std::string> const& walls,
@@ -96,7 +99,8 @@ inline BoundaryConditions boundary_conditions(Mesh const& mesh, UnstructuredTopo
   return boundary_conditions(HostInstance(), mesh, topology, face_patches, graph, motion, walls, displacements);
 }
 
-/// Another motion with the same rules for the same patches, on the same boundary. Throws the errors of resolve() and BoundaryMotion.
+/// Another motion with the same rules for the same patches, on the same boundary. Throws the errors of resolve() and
+/// BoundaryMotion.
 std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& boundary, Motion const& motion);
 
 /// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.

@@ -195,7 +195,8 @@ struct BoundaryMotion::Impl {
     return moved_walls.try_emplace(w, *boundary, patches_of(w), displacement, anywhere, name).first->second;
   }
 
-  /// After all that moves walls, and before what is attached to them as they go. Walls that carry features together are one.
+  /// After all that moves walls, and before what is attached to them as they go. Walls that carry features together are
+  /// one.
   void carry(std::vector<std::string>& said) {
     auto const displacement = [this](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[std::size_t(p)].rule, points, out);
@@ -228,7 +229,8 @@ struct BoundaryMotion::Impl {
            (least < most ? " to " + to_text(most, 3) : "") + " around, where they have room";
   }
 
-  /// The walls and features of one set of rules; patches with a displacement of their own that are none of it limit how far they reach.
+  /// The walls and features of one set of rules; patches with a displacement of their own that are none of it limit how
+  /// far they reach.
   [[nodiscard]] std::shared_ptr<CarryingWall const> carrying_wall(std::vector<int> const& set_of_rule, int set,
                                                                   CarriedFeatures::Displacement const& own) const {
     std::vector<int> walls;

@@ -28,8 +28,8 @@ class BoundaryMotion {
   BoundaryMotion(BoundaryMotion&&) noexcept;
   BoundaryMotion& operator=(BoundaryMotion&&) noexcept;
 
-  /// The same rules for the same patches at another time, when they displace by something else. Slip surfaces and the places of
-  /// nodes on targets are shared; slides and followers take over the blade's motion as it is then.
+  /// The same rules for the same patches at another time, when they displace by something else. Slip surfaces and the
+  /// places of nodes on targets are shared; slides and followers take over the blade's motion as it is then.
   [[nodiscard]] BoundaryMotion with(Motion const& motion) const;
 
   [[nodiscard]] Boundary const& boundary() const;
@@ -37,18 +37,21 @@ class BoundaryMotion {
   [[nodiscard]] ResolvedMotion const& motion() const;
 
   /// Whether rule number r (in ResolvedMotion::rules) fixes displacements before the volume stage (fixed, rigid,
-  /// function, sections, target, inflate, ffd, extend, circumferential-slide, follow, attached, carry, wake, prescribed).
+  /// function, sections, target, inflate, ffd, extend, circumferential-slide, follow, attached, carry, wake,
+  /// prescribed).
   [[nodiscard]] bool is_explicit(int rule) const;
 
-  /// Displacement that rule number r gives to baseline points; zero where the caller prescribes it. Throws MotionError (rule, point
-  /// and value) when a displacement is not finite. Precondition: is_explicit(r).
+  /// Displacement that rule number r gives to baseline points; zero where the caller prescribes it. Throws MotionError
+  /// (rule, point and value) when a displacement is not finite. Precondition: is_explicit(r).
   void displacement(int rule, std::span<Vec3 const> points, std::span<Vec3> out) const;
 
   /// The surfaces that slip (or constrained free) rules keep nodes on, each once.
   [[nodiscard]] std::vector<SlipSurface> const& slip_surfaces() const;
-  /// Number in slip_surfaces() of that of patch p; -1 for other rules. Patches of elements may lie on several: this is one of them.
+  /// Number in slip_surfaces() of that of patch p; -1 for other rules. Patches of elements may lie on several: this is
+  /// one of them.
   [[nodiscard]] int slip_surface_of(int patch) const;
-  /// Calls visit(number in slip_surfaces(), nodes) for each surface of patch p with its nodes on it; nodes where two meet come with both.
+  /// Calls visit(number in slip_surfaces(), nodes) for each surface of patch p with its nodes on it; nodes where two
+  /// meet come with both.
   void each_slip_surface(int patch, std::function<void(int, std::vector<Index> const&)> const& visit) const;
   /// That surface, or null.
   [[nodiscard]] SlipSurface const* slip_surface(int patch) const;
@@ -56,8 +59,8 @@ class BoundaryMotion {
   /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
   [[nodiscard]] bool slides_upstream(int rule, Vec3 const& point) const;
 
-  /// Whether what rule number r gives to nodes of a patch is the rule of that patch, seen through sections cut from its facets: the patch's
-  /// own rule says it better.
+  /// Whether what rule number r gives to nodes of a patch is the rule of that patch, seen through sections cut from its
+  /// facets: the patch's own rule says it better.
   [[nodiscard]] bool gives_way(int rule, int patch) const;
 
   /// Of rule number r, an ffd rule; null for others.
@@ -65,7 +68,8 @@ class BoundaryMotion {
   /// Whether rule number r alone displaces its points: no blades are extended to them, and no features carried on them.
   [[nodiscard]] bool alone(int rule) const;
 
-  /// How far the nodes of each target rule ended from their target; rules in order, without those that go a share of the way only.
+  /// How far the nodes of each target rule ended from their target; rules in order, without those that go a share of
+  /// the way only.
   [[nodiscard]] std::vector<TargetReach> target_reach(Coordinates const& morphed) const;
 
   /// Human-readable facts found on the way: blade sections, span range, profile deviation, mapping distances.

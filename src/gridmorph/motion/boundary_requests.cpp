@@ -157,7 +157,8 @@ void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
 
 namespace {
 
-/// What leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out of its plane squeezed.
+/// What leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out of its
+/// plane squeezed.
 void require_in_plane(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                       std::vector<Vec3> const& displacement) {
   Boundary const& surfaces = motion.boundary();

@@ -9,8 +9,9 @@
 
 namespace gridmorph {
 
-/// Raised around a place of the contour. With q the distance from an edge over the chord, straight in the surface of the section and negative
-/// on side -1, and h the span fraction: height(h) shape(r), r^2 = ((q - position(h)) / extent(h))^2 + ((h - span) / span_extent)^2.
+/// Raised around a place of the contour. With q the distance from an edge over the chord, straight in the surface of
+/// the section and negative on side -1, and h the span fraction: height(h) shape(r), r^2 = ((q - position(h)) /
+/// extent(h))^2 + ((h - span) / span_extent)^2.
 struct Bulb {
   enum class Edge { leading, trailing };
   enum class Shape {
@@ -29,8 +30,8 @@ struct Bulb {
   [[nodiscard]] double at(SurfacePlace const& place) const;
 };
 
-/// The sum of bulbs. Throws MotionError for extents that are not positive, values that are not finite, and bulbs that reach around the
-/// other edge, where distances from theirs end. The rule refuses heights above the chord.
+/// The sum of bulbs. Throws MotionError for extents that are not positive, values that are not finite, and bulbs that
+/// reach around the other edge, where distances from theirs end. The rule refuses heights above the chord.
 InflateRule make_bulbs(std::vector<Bulb> bulbs, InflateRule::Sections const& sections);
 
 }  // namespace gridmorph

@@ -20,7 +20,8 @@ struct Disagreeing {
   std::string advice;       ///< what its rule could be instead
 };
 
-/// Collects nodes on which patches disagree; one message for each two names, however many patches, zones and nodes they have in common.
+/// Collects nodes on which patches disagree; one message for each two names, however many patches, zones and nodes they
+/// have in common.
 class Disagreements {
  public:
   /// At most so many messages are written out.
@@ -30,7 +31,8 @@ class Disagreements {
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
 
-  /// Most nodes first. `points_of(name)`: the nodes of what has that name, patch by patch, from which is told what rule it could have.
+  /// Most nodes first. `points_of(name)`: the nodes of what has that name, patch by patch, from which is told what rule
+  /// it could have.
   template <class PointsOf>
   [[nodiscard]] std::vector<std::string> messages(Mesh const& mesh, Axis const& axis, PointsOf const& points_of) const {
     std::vector<std::string> out;

@@ -21,8 +21,8 @@ struct FfdBox {
 ///
 ///   u(x) = share * sum_ijk B_i(s) B_j(t) B_k(w) d_ijk,
 ///
-/// with B clamped B-splines over uniform knots and (s, t, w) the place of x in the lattice as it stands: u is linear in d. Nodes outside of the lattice stay.
-/// docs/motion.md has the rest.
+/// with B clamped B-splines over uniform knots and (s, t, w) the place of x in the lattice as it stands: u is linear in
+/// d. Nodes outside of the lattice stay. docs/motion.md has the rest.
 struct FfdRule {
   static constexpr int most_degree = 24;
 
@@ -32,12 +32,14 @@ struct FfdRule {
   std::vector<Vec3> displacement{};    ///< d, one for each control point, i fastest
   double share = 1;                    ///< of all displacements
   std::optional<FfdBox> box{};         ///< of three edges that span a volume
-  /// Positions of the control points, i fastest, for lattices that are no box; the place of a node in them is found by Newton's method.
+  /// Positions of the control points, i fastest, for lattices that are no box; the place of a node in them is found by
+  /// Newton's method.
   std::vector<Vec3> points{};
-  /// Without box and points: a box along the coordinates around the nodes of the patches, wider on each side by so much of its length.
+  /// Without box and points: a box along the coordinates around the nodes of the patches, wider on each side by so much
+  /// of its length.
   double margin = 0.05;
-  /// At faces of the lattice through which the patches run out of it the motion ends with this many continuous derivatives, 0 to 2:
-  /// the displacement of continuity + 1 layers of control points there must be zero.
+  /// At faces of the lattice through which the patches run out of it the motion ends with this many continuous
+  /// derivatives, 0 to 2: the displacement of continuity + 1 layers of control points there must be zero.
   int continuity = 1;
   /// i-min, i-max, j-min, ...: no layers are held there, whether patches run through or not.
   std::array<bool, 6> open{};

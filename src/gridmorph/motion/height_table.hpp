@@ -9,8 +9,9 @@
 
 namespace gridmorph {
 
-/// Heights at stations: along the chord between those of one span fraction, then along the span between these, both times as
-/// SpanwiseTable does. Beyond the first and last station: theirs. Stations of a span fraction need not be at the chord fractions of another.
+/// Heights at stations: along the chord between those of one span fraction, then along the span between these, both
+/// times as SpanwiseTable does. Beyond the first and last station: theirs. Stations of a span fraction need not be at
+/// the chord fractions of another.
 class HeightTable {
  public:
   struct Station {

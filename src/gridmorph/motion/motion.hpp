@@ -2,9 +2,10 @@
 //
 // A rule addresses patches by selector: a family name, BC name or connection name, with `*` and `?` globs, or
 // `type:wall`, `type:inflow`, `type:periodic`, ... Rules are explicit (fixed, rigid, function, sections, target,
-// inflate, ffd, extend, circumferential slide, follow, attached, carry, wake, shock, prescribed: the displacement of every node is known before the volume stage) or implicit (slip, free: the volume stage
-// carries the nodes and the finalize step puts them back on their surface). Regions inside the domain are addressed by their names
-// and take explicit rules that need no surface.
+// inflate, ffd, extend, circumferential slide, follow, attached, carry, wake, shock, prescribed: the displacement of
+// every node is known before the volume stage) or implicit (slip, free: the volume stage carries the nodes and the
+// finalize step puts them back on their surface). Regions inside the domain are addressed by their names and take
+// explicit rules that need no surface.
 #pragma once
 
 #include <gridmorph/boundary/regions.hpp>
@@ -111,11 +112,12 @@ struct FreeRule {
   Constraint constraint = Constraint::none;  ///< axial: axial position kept; plane: nodes stay on the patch's plane
 };
 
-/// Whatever displacement the caller of a morph gives these nodes: surfaces that a structural solver moves. What rules give them is
-/// zero, and no rule beside them disagrees with it.
+/// Whatever displacement the caller of a morph gives these nodes: surfaces that a structural solver moves. What rules
+/// give them is zero, and no rule beside them disagrees with it.
 struct PrescribedRule {};
 
-/// Where a node of a surface is: its position, and on a blade or wing its place on the sections that SectionsRule finds.
+/// Where a node of a surface is: its position, and on a blade or wing its place on the sections that SectionsRule
+/// finds.
 struct SurfacePlace {
   Vec3 point;                 ///< baseline
   double span_fraction = 0;   ///< the others are 0 unless the rule asks for sections
@@ -126,9 +128,10 @@ struct SurfacePlace {
   double from_trailing_edge = 0;  ///< likewise
 };
 
-/// Nodes go along the normals of their surface: coatings, deposits, erosion. Every face is offset by the height; on smooth surfaces a
-/// node moves by the height along its normal, at creases by the height over the cosine between its way and the normals of the faces, by
-/// twice the height at most. Nodes of slip surfaces stay on them. Surfaces that would fold are refused. docs/motion.md has the rest.
+/// Nodes go along the normals of their surface: coatings, deposits, erosion. Every face is offset by the height; on
+/// smooth surfaces a node moves by the height along its normal, at creases by the height over the cosine between its
+/// way and the normals of the faces, by twice the height at most. Nodes of slip surfaces stay on them. Surfaces that
+/// would fold are refused. docs/motion.md has the rest.
 struct InflateRule {
   std::string description{};  ///< for reports: "height 0.001"
   /// Height at each place, positive into the mesh; equal for equal places.
@@ -152,17 +155,19 @@ struct InflateRule {
 struct AttachedRule {
   std::vector<std::string> of;  ///< patches with a rule of their own
   enum class How {
-    rigid,  ///< one rigid motion, x' = t + R (x - s): the one that fits that of the walls' nodes best (least squares)
-    shift,  ///< the mean displacement of the walls' nodes
-    nearest  ///< each point takes the displacement of the nearest place on the walls, linear between the corners of its face
+    rigid,   ///< one rigid motion, x' = t + R (x - s): the one that fits that of the walls' nodes best (least squares)
+    shift,   ///< the mean displacement of the walls' nodes
+    nearest  ///< each point takes the displacement of the nearest place on the walls, linear between the corners of its
+             ///< face
   };
   How how = How::rigid;
   /// rigid, shift: only the nodes within a distance of a place, which is the second [length].
   std::optional<std::pair<Vec3, double>> near{};
 };
 
-/// Features that sit on walls which other rules move: holes, squealers, shrouds, sensors. Each connected one keeps its shape and goes with the
-/// wall where its rim meets it; the wall around goes along, and fades to its own motion. CarriedFeatures has the formulas.
+/// Features that sit on walls which other rules move: holes, squealers, shrouds, sensors. Each connected one keeps its
+/// shape and goes with the wall where its rim meets it; the wall around goes along, and fades to its own motion.
+/// CarriedFeatures has the formulas.
 struct CarryRule {
   std::vector<std::string> of;  ///< patches with a rule of their own that the features sit on
   /// axial: the axial position of every node is kept; plane: nodes stay on the planes of the feature's flat patches.
@@ -191,8 +196,8 @@ struct ShockRule {
   std::shared_ptr<ShockShift const> shift{};  ///< how far the shock goes, place by place
 };
 
-/// Blades on end walls that other rules move: their spanwise grid lines are extended or trimmed along themselves to the moved walls, and the
-/// walls' nodes around them go along.
+/// Blades on end walls that other rules move: their spanwise grid lines are extended or trimmed along themselves to the
+/// moved walls, and the walls' nodes around them go along.
 struct ExtendRule {
   std::vector<std::string>
       of;  ///< end walls with a displacement of their own; another end of the lines stays where it is
@@ -221,8 +226,8 @@ struct Motion {
   /// A patch that no rule matches: its CGNS type's default (symmetry slips on its plane, periodic pairs move freely as
   /// one, everything else stays fixed), or an error when strict.
   bool strict = false;
-  /// Displacements that differ by less than this times the mesh size on a shared edge, or by what the rounding of coordinates makes of
-  /// them, are one and the same.
+  /// Displacements that differ by less than this times the mesh size on a shared edge, or by what the rounding of
+  /// coordinates makes of them, are one and the same.
   double conformity_tolerance = 1e-9;
 };
 
@@ -238,10 +243,10 @@ struct ResolvedMotion {
   Axis axis;
   double conformity_tolerance = 1e-9;
   std::vector<MotionRule> rules;
-  std::vector<Resolution> patch;  ///< per Mesh::patches
-  std::vector<Resolution>
-      interface;  ///< per connection (Mesh::interfaces, then Mesh::connections); rule -1 for plain ones and for free periodics
-  std::vector<std::string> notes;  ///< defaults taken, for the output
+  std::vector<Resolution> patch;      ///< per Mesh::patches
+  std::vector<Resolution> interface;  ///< per connection (Mesh::interfaces, then Mesh::connections); rule -1 for plain
+                                      ///< ones and for free periodics
+  std::vector<std::string> notes;     ///< defaults taken, for the output
 
   [[nodiscard]] Rule const& patch_rule(int p) const { return rules[patch[p].rule].rule; }
 };

@@ -21,10 +21,10 @@ struct RigidSteps {
 /// a scale factor is zero, or the axis has no direction.
 RigidRule make_rigid(RigidSteps const& steps);
 
-/// Several of them one after another, and of each one a share: of its angle, of its translation, and of the logarithm of its scale
-/// factors. So half of a turn is a turn by half the angle, twice half of a stretch is the stretch, and a negative share goes the
-/// other way. Share 1 is the motion itself, bit for bit; share 0 none. Throws MotionError as above, and for scale factors that are
-/// not positive where the share is not 1.
+/// Several of them one after another, and of each one a share: of its angle, of its translation, and of the logarithm
+/// of its scale factors. So half of a turn is a turn by half the angle, twice half of a stretch is the stretch, and a
+/// negative share goes the other way. Share 1 is the motion itself, bit for bit; share 0 none. Throws MotionError as
+/// above, and for scale factors that are not positive where the share is not 1.
 RigidRule make_rigid_steps(std::span<RigidSteps const> steps, double share = 1);
 
 /// Displacement of a point under the rule: (M - I) x + t, exactly t where M is the identity.

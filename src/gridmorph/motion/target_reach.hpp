@@ -9,8 +9,8 @@
 
 namespace gridmorph {
 
-/// Distances of the nodes of one target rule from their target, lengths in units of the mesh: from their own point where
-/// the mapping is node for node, otherwise from the target's facets.
+/// Distances of the nodes of one target rule from their target, lengths in units of the mesh: from their own point
+/// where the mapping is node for node, otherwise from the target's facets.
 struct TargetReach {
   std::string description;  ///< of the rule
   TargetRule::Mapping mapping = TargetRule::Mapping::nodes;

@@ -21,7 +21,8 @@ class WallFaces {
   };
 
   WallFaces() = default;
-  /// Of lines in the boundary of a plane mesh the lines. Throws MotionError where the patches have neither. Cost O(n log n).
+  /// Of lines in the boundary of a plane mesh the lines. Throws MotionError where the patches have neither. Cost O(n
+  /// log n).
   WallFaces(Boundary const& boundary, std::vector<int> const& patches, Displacement const& displacement);
 
   [[nodiscard]] bool empty() const { return tree_.empty(); }

@@ -8,8 +8,8 @@
 
 namespace gridmorph {
 
-/// Throws ConfigError unless a boundary displacement of `given` entries fits a plan that wants `needed` of them, in the order of
-/// `list`: a shorter one would be read past its end, a longer one is in some other order.
+/// Throws ConfigError unless a boundary displacement of `given` entries fits a plan that wants `needed` of them, in the
+/// order of `list`: a shorter one would be read past its end, a longer one is in some other order.
 inline void require_boundary_size(char const* who, std::size_t given, std::size_t needed, char const* list) {
   if (given == needed) return;
   throw ConfigError(std::string(who) + ": the boundary displacement has " + std::to_string(given) +

@@ -8,7 +8,8 @@
 
 namespace gridmorph {
 
-/// A chain by one of its blocks and the axis of that along which it runs. Blocks are numbered by the topology of a mesh and its rules.
+/// A chain by one of its blocks and the axis of that along which it runs. Blocks are numbered by the topology of a mesh
+/// and its rules.
 struct ChainPlace {
   int block = -1;
   int axis = 0;

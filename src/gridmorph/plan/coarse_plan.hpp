@@ -20,7 +20,8 @@ class CoarsePlanner {
 
   [[nodiscard]] int every() const { return every_; }
   [[nodiscard]] CoarseMesh const& coarse() const { return coarse_; }
-  /// With the line parameters of the mesh itself. `first`, `next`, `choice`: see build_plan(). Cost: that of a plan of the lines kept.
+  /// With the line parameters of the mesh itself. `first`, `next`, `choice`: see build_plan(). Cost: that of a plan of
+  /// the lines kept.
   [[nodiscard]] PlannedMorph plan(ChainOrder const& first, ChainOrder* next = nullptr,
                                   ChainChoice choice = ChainChoice::rules);
   /// Such a plan, with what parts have in common by `boundary`. Cost: a copy.

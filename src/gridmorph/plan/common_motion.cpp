@@ -18,7 +18,8 @@ double product(Row const& a, Row const& b) { return std::inner_product(a.begin()
 /// An orthonormal basis of what A may not do.
 class Forbidden {
  public:
-  /// Twice, so that what is left is orthogonal to round-off. What repeats the others but for the noise of a mesh is left out.
+  /// Twice, so that what is left is orthogonal to round-off. What repeats the others but for the noise of a mesh is
+  /// left out.
   void add(Row row) {
     constexpr double repeated = 1e-6;
     double const length = std::sqrt(product(row, row));

@@ -1,4 +1,5 @@
-// The motion that all boundaries of a part of a mesh have in common: which affine displacements the part may make, and the fit among them.
+// The motion that all boundaries of a part of a mesh have in common: which affine displacements the part may make, and
+// the fit among them.
 //
 // docs/algorithms/common_motion.md has the formulas; kernels/common_motion.hpp applies them.
 #pragma once
@@ -22,7 +23,8 @@ struct CommonLimits {
   std::vector<RigidTransform> copies;  ///< A(T x) = R A(x): nodes are periodic copies
 };
 
-/// The fit by least squares, weighted by area, of a displacement affine in space to what the boundary nodes of a part are given.
+/// The fit by least squares, weighted by area, of a displacement affine in space to what the boundary nodes of a part
+/// are given.
 struct CommonMotion {
   kernels::CommonFrame frame{};
   kernels::CommonProjection projection{};
@@ -40,12 +42,13 @@ struct CommonMotion {
     double linear = 0, rest = 0;
   };
   [[nodiscard]] Reach reach(std::span<Vec3 const> displacement) const;
-  /// Whether nearly all of what tells the displacements apart is one affine motion: the rest is below a tenth of it. A shift alone is none: every stage
-  /// keeps that to the last bit but rounding.
+  /// Whether nearly all of what tells the displacements apart is one affine motion: the rest is below a tenth of it. A
+  /// shift alone is none: every stage keeps that to the last bit but rounding.
   [[nodiscard]] bool is_common(std::span<Vec3 const> displacement) const;
 };
 
-/// Nodes that lie on a line or in a plane say nothing of what is across it: A does not change along that direction. area: of each node, any unit. Cost O(nodes + limits).
+/// Nodes that lie on a line or in a plane say nothing of what is across it: A does not change along that direction.
+/// area: of each node, any unit. Cost O(nodes + limits).
 CommonMotion common_motion(std::vector<Vec3> position, std::vector<double> area, CommonLimits const& limits);
 
 }  // namespace gridmorph

@@ -1,4 +1,5 @@
-// What a user can choose about the morph of a mesh of elements, beside the rest of PlanOptions. Plain values with their defaults.
+// What a user can choose about the morph of a mesh of elements, beside the rest of PlanOptions. Plain values with their
+// defaults.
 #pragma once
 
 #include <memory>
@@ -24,8 +25,8 @@ enum class LayerWeight {
 };
 
 struct ElementOptions {
-  /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that is no
-  /// inflow, outflow, farfield or symmetry.
+  /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that
+  /// is no inflow, outflow, farfield or symmetry.
   std::vector<std::string> walls;
   NearFieldMethod method = NearFieldMethod::lattice;
   LayerWeight weight = LayerWeight::inverse_distance;
@@ -36,8 +37,8 @@ struct ElementOptions {
   int resolution = 4;
   bool tube = false;  ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)
   int cells = 4;      ///< of the background mesh along each cell of the wrap's lattice
-  /// A background mesh of the user's instead of one around a wrap made here, which `offset`, `resolution`, `tube` and `cells` are
-  /// for; its hole is the wrap.
+  /// A background mesh of the user's instead of one around a wrap made here, which `offset`, `resolution`, `tube` and
+  /// `cells` are for; its hole is the wrap.
   std::shared_ptr<Background const> background;
 };
 

@@ -19,9 +19,10 @@ struct StagesDone {
 /// Everything that a morph does, one after another: the boundary, every stage, every pass over slip surfaces.
 std::vector<StagesDone> stages_of(Plan const& plan);
 
-/// The plan that ends there. Nodes that none of these stages reaches are not written, or stay where they are: every slot of the skeleton
-/// that the motion does not give is one more boundary node, behind those of `plan`, whose displacement has to be given as zero (its entry in
-/// boundary_nodes is -1). All stages done, it is the morph of `plan` bit for bit. Cost: a copy of the plan.
+/// The plan that ends there. Nodes that none of these stages reaches are not written, or stay where they are: every
+/// slot of the skeleton that the motion does not give is one more boundary node, behind those of `plan`, whose
+/// displacement has to be given as zero (its entry in boundary_nodes is -1). All stages done, it is the morph of `plan`
+/// bit for bit. Cost: a copy of the plan.
 Plan first_stages(Plan const& plan, StagesDone const& done);
 
 /// Where cells have their turn, numbered as first_cells() does.

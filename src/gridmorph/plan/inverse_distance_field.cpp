@@ -121,8 +121,8 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
   InverseDistanceField out;
   if (nodes.empty()) return out;
   out.shape = lattice_over(low, high, dimension, most_nodes);
-  // What cells of the lattice show. Where nodes of walls are further apart, the nearest of them decide about a cell, and means of
-  // four would depend on which are grouped.
+  // What cells of the lattice show. Where nodes of walls are further apart, the nearest of them decide about a cell,
+  // and means of four would depend on which are grouped.
   Tree const tree(coordinates, nodes, area, 0.2513 * out.shape.spacing);
   out.n_groups = Index32(tree.groups.size());
   for (Group const& group : tree.groups) out.centre.push_back(group.centre);

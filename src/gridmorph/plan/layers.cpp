@@ -21,8 +21,8 @@ struct Source {
   Index32 node;
 };
 
-/// How much a source counts by how far it is below, over the length of the edge: not at all up to 0.28, whole from 0.38 on. Without a step, so
-/// that round-off in coordinates stays small.
+/// How much a source counts by how far it is below, over the length of the edge: not at all up to 0.28, whole from 0.38
+/// on. Without a step, so that round-off in coordinates stays small.
 double share_of_slope(double slope) {
   double const s = std::clamp((slope - 0.28) / 0.1, 0.0, 1.0);
   return s * s * (3 - 2 * s);
@@ -83,8 +83,8 @@ struct Turns {
   std::vector<Index32> of;    ///< (n_nodes) 0: a seed; 1 + place in `node`
 };
 
-/// Nodes from near to far, each when a neighbour has had its turn: one that lies nearest among its neighbours though it is no seed (the straight
-/// way to its wall leads through other walls) waits for them.
+/// Nodes from near to far, each when a neighbour has had its turn: one that lies nearest among its neighbours though it
+/// is no seed (the straight way to its wall leads through other walls) waits for them.
 Turns take_turns(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds, std::vector<Index32> order) {
   Turns out;
   out.of.resize(seeds.size());

@@ -82,7 +82,8 @@ std::string chain_name(Mesh const& mesh, Topology const& topology, Chain const& 
   return text;
 }
 
-/// "'blade' to 'inlet'": what the ends of a chain lie on, or what made the faces known that they lie on; nothing where neither is named.
+/// "'blade' to 'inlet'": what the ends of a chain lie on, or what made the faces known that they lie on; nothing where
+/// neither is named.
 std::string names_of_ends(Mesh const& mesh, Chain const& chain) {
   auto const names = [&](ChainEnd const& end) {
     constexpr std::size_t most = 3;
@@ -93,8 +94,8 @@ std::string names_of_ends(Mesh const& mesh, Chain const& chain) {
   return names(chain.first) + " to " + names(chain.last);
 }
 
-/// Of chains between moving ends: a line that starts turned has to turn back, which costs more reach than the near field gains
-/// (docs/quality.md has the figures).
+/// Of chains between moving ends: a line that starts turned has to turn back, which costs more reach than the near
+/// field gains (docs/quality.md has the figures).
 constexpr double passage_turn = 0;
 
 struct HandedOn {
@@ -120,9 +121,9 @@ class Scheduler {
         gaps_(gaps),
         choice_(choice) {}
 
-  /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of walls
-  /// so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated between
-  /// its wall and the face that the earlier one moves.
+  /// Stage 0. Near fields that get in each other's way follow one another: of walls that meet at a concave edge, and of
+  /// walls so near that their near fields touch. There the later one has no room to move rigidly: it is interpolated
+  /// between its wall and the face that the earlier one moves.
   void near_field(std::vector<StageChain> chains) {
     before_near_field_ = known_.known;
     for (int turn = 0; !chains.empty(); ++turn) {
@@ -159,9 +160,9 @@ class Scheduler {
     }
   }
 
-  /// What near fields hand on of their turn, and how it fades. Where their lines end at rest: all of it if they move as rigid
-  /// bodies, as far as the bodies' own motion does; none otherwise, as what turns differently from line to line tears far from the
-  /// wall.
+  /// What near fields hand on of their turn, and how it fades. Where their lines end at rest: all of it if they move as
+  /// rigid bodies, as far as the bodies' own motion does; none otherwise, as what turns differently from line to line
+  /// tears far from the wall.
   HandedOn hand_on(std::vector<NearField> const& fields, WallRoots const& roots) {
     bool any = false;
     HandedOn const between_moving{options_.volume.turn.value_or(passage_turn), kernels::TurnLaw::square};
@@ -277,7 +278,8 @@ class Scheduler {
     std::stable_sort(chains.begin(), chains.end(),
                      [&](RankedChain const& a, RankedChain const& b) { return key(a) < key(b); });
   }
-  /// What could be the next stage: all chains of one rank, in either order where they compete, and each chain by itself.
+  /// What could be the next stage: all chains of one rank, in either order where they compete, and each chain by
+  /// itself.
   ChainOrder alternatives() {
     std::vector<RankedChain> chains = collect(Ends::both);
     for (Ends const ends : {Ends::across_gap, Ends::through_gap, Ends::one})
@@ -325,7 +327,8 @@ class Scheduler {
       });
     });
   }
-  /// To a tenth of its largest displacement, or to a fifth where it turns by more than 30 degrees: what turns far tears where it hands nothing on.
+  /// To a tenth of its largest displacement, or to a fifth where it turns by more than 30 degrees: what turns far tears
+  /// where it hands nothing on.
   [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
     std::map<int, std::vector<std::size_t>> of_rule;
     for (std::size_t n = 0; n < body.places.size(); ++n)
@@ -389,7 +392,8 @@ class Scheduler {
     through_gap,  ///< both known
     one           ///< one known, the other on the boundary
   };
-  /// Every chain through active blocks with such ends, in the order of these: lines across gaps come before all that would cross them.
+  /// Every chain through active blocks with such ends, in the order of these: lines across gaps come before all that
+  /// would cross them.
   std::vector<RankedChain> collect(Ends ends) {
     std::vector<RankedChain> chains;
     std::set<std::pair<int, int>> seen;
@@ -475,8 +479,9 @@ std::vector<int> inner_boxes(Mesh const& mesh, Topology const& topology, std::ve
   return box_of_piece;
 }
 
-/// Arms that say how walls turn are so many times longer than what coordinates resolve. A deformation by a twentieth turns them by a
-/// twentieth of the rest, and lines of the near field that stand beside one another must not cross for that.
+/// Arms that say how walls turn are so many times longer than what coordinates resolve. A deformation by a twentieth
+/// turns them by a twentieth of the rest, and lines of the near field that stand beside one another must not cross for
+/// that.
 constexpr double resolved_arm = 256;
 
 /// The topology with blocks that end at these planes, which become those of `limits`.

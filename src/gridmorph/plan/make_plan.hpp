@@ -16,9 +16,9 @@ struct PlannedMorph {
 };
 
 /// Plans the morph of a mesh whose links are connected and whose coverage is checked. Coordinates are read
-/// on surfaces, and in whole blocks only where the quality rule has to break a tie. `first`: chains of the first stages, instead of
-/// those that rank best. Throws PlanError naming blocks that no chain reaches, near fields that cannot be, and chains of `first` that
-/// end nowhere.
+/// on surfaces, and in whole blocks only where the quality rule has to break a tie. `first`: chains of the first
+/// stages, instead of those that rank best. Throws PlanError naming blocks that no chain reaches, near fields that
+/// cannot be, and chains of `first` that end nowhere.
 PlannedMorph make_plan(HostInstance const& host, Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
                        PlanOptions const& options, ChainOrder const& first = {});
 

@@ -17,8 +17,8 @@ InterpolationOperator joined(HostInstance const& host, std::span<InterpolationOp
 InterpolationOperator gathered(HostInstance const& host, InterpolationOperator const& rows,
                                std::span<Index const> order);
 
-/// The rows that make(k, rows) adds for 0 <= k < count, in this order whatever the number of threads is. Every part calls a copy of `make`, which may keep
-/// room of its own. Cost besides: rows are copied once.
+/// The rows that make(k, rows) adds for 0 <= k < count, in this order whatever the number of threads is. Every part
+/// calls a copy of `make`, which may keep room of its own. Cost besides: rows are copied once.
 template <class Make>
 InterpolationOperator make_rows(HostInstance const& host, std::string const& label, Index count, Make const& make) {
   constexpr Index part = 512;

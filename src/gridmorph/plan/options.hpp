@@ -18,7 +18,8 @@ struct BoundaryLayer {
     block,      ///< up to the first opposite block face
     layers,     ///< so many cells; runs through block and zone limits
     thickness,  ///< so far
-    automatic  ///< blocks: `block` where another block follows, else a third of the cells to the boundary; elements: `block`
+    automatic   ///< blocks: `block` where another block follows, else a third of the cells to the boundary; elements:
+                ///< `block`
   };
   enum class Mode {
     translate,  ///< every node of a grid line or column takes the displacement of its wall node
@@ -43,16 +44,18 @@ enum class Law {
   own       ///< the OwnLaw beside it
 };
 
-/// A law of the user's own: w(s), the weight of a line's far end, for s = 0 ... 1, with w(0) = 0 and w(1) = 1 to 1e-12 and finite between;
-/// PlanError otherwise. Plans call it a few hundred times, from one thread, and keep a table of cubics through its values
-/// (tabulate() in plan/law_table.hpp says how near they come); kernels read that, so that all execution spaces get the same bits.
+/// A law of the user's own: w(s), the weight of a line's far end, for s = 0 ... 1, with w(0) = 0 and w(1) = 1 to 1e-12
+/// and finite between; PlanError otherwise. Plans call it a few hundred times, from one thread, and keep a table of
+/// cubics through its values (tabulate() in plan/law_table.hpp says how near they come); kernels read that, so that all
+/// execution spaces get the same bits.
 struct OwnLaw {
   std::function<double(double)> weight;
   std::string name;  ///< in what plans print
 };
 
-/// The law of chains between two kinds of ends ("wall", "periodic", ...) or patches and periodic interfaces (any selector that is no
-/// kind), in either order. A face that a chain made known counts as the better of that chain's ends, as both where they rank alike.
+/// The law of chains between two kinds of ends ("wall", "periodic", ...) or patches and periodic interfaces (any
+/// selector that is no kind), in either order. A face that a chain made known counts as the better of that chain's
+/// ends, as both where they rank alike.
 struct LawOfEnds {
   std::array<std::string, 2> between;
   Law law = Law::linear;
@@ -72,8 +75,8 @@ struct PriorityRule {
   std::vector<std::string> patches{};  ///< boundary: selectors of patches that come before all kinds, first to last
 };
 
-/// Boundary types, then quality, then aspect ratio. A function, not a braced list beside the member: g++ 12 ends with an internal
-/// error where such a member's struct is value-initialised inside a template.
+/// Boundary types, then quality, then aspect ratio. A function, not a braced list beside the member: g++ 12 ends with
+/// an internal error where such a member's struct is value-initialised inside a template.
 inline std::vector<PriorityRule> standard_priority() {
   return {{PriorityRule::Kind::boundary, standard_order()},
           {PriorityRule::Kind::quality, {}},
@@ -82,12 +85,15 @@ inline std::vector<PriorityRule> standard_priority() {
 
 /// What decides which chain of blocks comes first.
 enum class OrderBy {
-  priority,  ///< VolumeOptions::priority
-  prediction,  ///< the order of which predict() says the best, never worse than that by priority; needs the rules' displacements
-  automatic  ///< priority; where predict() finds inverted cells and `law` is linear for all chains, what a quick search for order and law finds
+  priority,    ///< VolumeOptions::priority
+  prediction,  ///< the order of which predict() says the best, never worse than that by priority; needs the rules'
+               ///< displacements
+  automatic  ///< priority; where predict() finds inverted cells and `law` is linear for all chains, what a quick search
+             ///< for order and law finds
 };
 
-/// A plane of nodes of a zone where blocks end: chains go on through it, and those beside one another on its two sides have ranks and orders of their own.
+/// A plane of nodes of a zone where blocks end: chains go on through it, and those beside one another on its two sides
+/// have ranks and orders of their own.
 struct BlockCut {
   std::string zone;     ///< its name
   int axis = 0;         ///< 0, 1, 2: the plane has one i, j or k
@@ -103,8 +109,8 @@ struct VolumeOptions {
   bool laws_by_prediction =
       false;  ///< blocks: other laws for single chains where predict() says that cells come out better
   OrderBy order = OrderBy::automatic;  ///< blocks
-  /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing: where all
-  /// lines from there end on boundaries at rest that are no walls and the walls move rigidly, 1; elsewhere 0.
+  /// Blocks: how much of the turn of their walls near fields that rotate hand on at their outer edge, 0 to 1. Nothing:
+  /// where all lines from there end on boundaries at rest that are no walls and the walls move rigidly, 1; elsewhere 0.
   std::optional<double> turn;
   std::vector<PriorityRule> priority = standard_priority();
   std::vector<BlockCut> cuts;  ///< blocks
@@ -120,7 +126,8 @@ struct VolumeOptions {
 struct PlanOptions {
   TopologyOptions topology;                    ///< blocks
   std::vector<BoundaryLayer> boundary_layers;  ///< how far the near field of which walls goes, and how it turns
-  /// Blocks: whether, where that list is empty, every wall patch whose rule moves it has the near field of BoundaryLayer{}.
+  /// Blocks: whether, where that list is empty, every wall patch whose rule moves it has the near field of
+  /// BoundaryLayer{}.
   bool default_boundary_layer = true;
   VolumeOptions volume;  ///< of elements: `law`, along the grid lines of the background mesh
   ElementOptions elements;

@@ -13,9 +13,9 @@
 
 namespace gridmorph {
 
-/// By x, y and z in steps of a share of the largest extent, a millionth unless told, then by what the steps leave. Where several nodes would do, the first of them is taken: numbered
-/// anew, in another unit, or with coordinates that are off by round-off, it is the same one. Steps begin and end off round numbers, where meshes have their
-/// nodes.
+/// By x, y and z in steps of a share of the largest extent, a millionth unless told, then by what the steps leave.
+/// Where several nodes would do, the first of them is taken: numbered anew, in another unit, or with coordinates that
+/// are off by round-off, it is the same one. Steps begin and end off round numbers, where meshes have their nodes.
 class PlaceOrder {
  public:
   /// O(n); keeps a reference.
@@ -46,7 +46,8 @@ class PlaceOrder {
   }
   /// A length in steps, but for round-off.
   [[nodiscard]] double rounded_steps(double length) const { return rounded(length / step_); }
-  /// To 16 bits: a number that round-off does not change, but for those at its steps, which no ratio of small integers is at.
+  /// To 16 bits: a number that round-off does not change, but for those at its steps, which no ratio of small integers
+  /// is at.
   [[nodiscard]] static double rounded(double a) {
     if (!std::isfinite(a) || a == 0) return a;
     // The same by the bits of the number, 52 of which are behind the leading one: 15 stay.

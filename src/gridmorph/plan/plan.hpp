@@ -1,5 +1,5 @@
-// The plan: everything a morph does, as flat tables. Depends on the baseline mesh and on which faces are known, never on
-// how far they move; made once on the host, applied any number of times.
+// The plan: everything a morph does, as flat tables. Depends on the baseline mesh and on which faces are known, never
+// on how far they move; made once on the host, applied any number of times.
 #pragma once
 
 #include <gridmorph/kernels/line_parameter.hpp>
@@ -103,7 +103,8 @@ struct TurnTables {
   TurningRoots bodies;
 };
 
-/// A part of the mesh whose boundaries have a motion in common: it is taken off what they are given, and added to all nodes of the part.
+/// A part of the mesh whose boundaries have a motion in common: it is taken off what they are given, and added to all
+/// nodes of the part.
 struct CommonPart {
   std::vector<int> zones;                 ///< ascending
   CommonMotion motion;                    ///< of `boundary`
@@ -134,14 +135,17 @@ struct Plan {
   Index n_nodes = 0;
   Index n_slots = 0;  ///< of the skeleton
   double mesh_size = 0;
-  /// Line parameters of all stages and passes, one after another, where they are not to be measured along the baseline's lines.
+  /// Line parameters of all stages and passes, one after another, where they are not to be measured along the
+  /// baseline's lines.
   std::vector<double> line_parameters;
 };
 
-/// The stages and chains in order, with the reason for each rank, as text; of a stage or a pass at most so many chains, and how many there are besides.
+/// The stages and chains in order, with the reason for each rank, as text; of a stage or a pass at most so many chains,
+/// and how many there are besides.
 std::string describe(Plan const& plan, std::size_t most_chains = std::numeric_limits<std::size_t>::max());
 
-/// A line per stage: chains, blocks of the longest, grid lines, and what most of its chains run between. For plans of hundreds of chains.
+/// A line per stage: chains, blocks of the longest, grid lines, and what most of its chains run between. For plans of
+/// hundreds of chains.
 std::string overview(Plan const& plan);
 
 }  // namespace gridmorph

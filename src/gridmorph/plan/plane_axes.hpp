@@ -9,8 +9,8 @@
 
 namespace gridmorph {
 
-/// Which components of a mesh come first, second and third: those in the plane of a 2-D mesh, then the one across it, in cyclic order, which makes a turn
-/// of it and no mirror image. 0, 1, 2 of others.
+/// Which components of a mesh come first, second and third: those in the plane of a 2-D mesh, then the one across it,
+/// in cyclic order, which makes a turn of it and no mirror image. 0, 1, 2 of others.
 std::array<int, 3> plane_axes(Mesh const& mesh);
 
 /// A vector's components in that order, and back.

@@ -9,8 +9,8 @@ namespace gridmorph {
 
 /// Everything that is known before a displacement is evaluated.
 struct PreparedMorph {
-  Mesh
-      mesh;  ///< with the patches that it lacked, for poles, open faces and regions, and notes on them; its coordinates are shared
+  Mesh mesh;  ///< with the patches that it lacked, for poles, open faces and regions, and notes on them; its
+              ///< coordinates are shared
   Links links;
   BoundaryMotion surface;
   PlannedMorph planned;
@@ -30,8 +30,8 @@ struct PreparedMorph {
   }
 };
 
-/// Connects the zones, completes and checks the boundary (patches for poles and, where asked for, open faces), resolves the
-/// rules and plans. Throws MeshError, MotionError or PlanError.
+/// Connects the zones, completes and checks the boundary (patches for poles and, where asked for, open faces), resolves
+/// the rules and plans. Throws MeshError, MotionError or PlanError.
 PreparedMorph prepare(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options);
 inline PreparedMorph prepare(Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
   return prepare(HostInstance(), mesh, motion, options);

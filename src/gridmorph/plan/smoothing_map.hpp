@@ -12,9 +12,10 @@ namespace gridmorph {
 ///
 ///   a_d = sum over boundary nodes b of gauge_d(b) . u(b),    u(n) += sum over d of a_d shift_d(n)
 ///
-/// a fixed linear map: no displacement gives no shift, to the bit; a scaled one scales it; a rate of the boundary's displacement gives that of the shift. Nodes on slip
-/// surfaces go back onto them after it. Made by SmoothingRecord (guard/smoothing_record.hpp), applied by a Morpher at the end of every call.
-/// Cost per call: modes times 24 bytes read per boundary node and per node that moves, 48 for the latter's displacement.
+/// a fixed linear map: no displacement gives no shift, to the bit; a scaled one scales it; a rate of the boundary's
+/// displacement gives that of the shift. Nodes on slip surfaces go back onto them after it. Made by SmoothingRecord
+/// (guard/smoothing_record.hpp), applied by a Morpher at the end of every call. Cost per call: modes times 24 bytes
+/// read per boundary node and per node that moves, 48 for the latter's displacement.
 struct SmoothingMap {
   int n_modes = 0;
   int n_records = 0;         ///< displacements that it was made of

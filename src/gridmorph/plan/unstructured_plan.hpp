@@ -34,12 +34,14 @@ struct ColumnPlan {
   std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
 };
 
-/// Bodies: walls that touch, that move and may turn and shift as a whole. kernels/body_turn.hpp has what becomes of them.
+/// Bodies: walls that touch, that move and may turn and shift as a whole. kernels/body_turn.hpp has what becomes of
+/// them.
 struct TurningBodies {
   std::vector<Vec3> centre;   ///< per body: mean place of its walls
   std::vector<Vec3> axis;     ///< per body: the one axis about which it may turn, unit; zero: any
   std::vector<Index32> wall;  ///< wall nodes, numbers in UnstructuredPlan::driving, body after body
-  /// Slots in UnstructuredPlan::known: of the wall nodes, then of all others, and their shares in the area of their body, or of the others.
+  /// Slots in UnstructuredPlan::known: of the wall nodes, then of all others, and their shares in the area of their
+  /// body, or of the others.
   std::vector<Index32> slot;
   std::vector<double> weight;
   std::vector<Index> first;              ///< first of `slot` in each chunk, and the end
@@ -56,7 +58,8 @@ struct TurningBodies {
 
 struct UnstructuredPlan;
 
-/// A part of a mesh that nothing connects with the others, or whose boundaries have a motion in common; it has a plan of its own.
+/// A part of a mesh that nothing connects with the others, or whose boundaries have a motion in common; it has a plan
+/// of its own.
 struct PartPlan {
   std::vector<Index32> nodes;          ///< of the part -> of the mesh, ascending
   std::vector<Index32> slots;          ///< of its known nodes -> of the mesh's
@@ -65,34 +68,37 @@ struct PartPlan {
 };
 
 struct UnstructuredPlan {
-  /// Where there are any they make the morph, and of what follows only the lists of boundary nodes, walls, columns, copies and further nodes
-  /// are filled, for guards and reports. Nodes of no part stay.
+  /// Where there are any they make the morph, and of what follows only the lists of boundary nodes, walls, columns,
+  /// copies and further nodes are filled, for guards and reports. Nodes of no part stay.
   std::vector<PartPlan> parts;
 
   Index n_nodes = 0;
   Vec3 plane_normal{0, 0, 1};  ///< of a 2-D mesh
   int dimension = 3;
-  /// Components of the mesh that are x, y and z here: plane meshes across x or y are planned, and moved, as ones across z. Everything in
-  /// this plan has those; what goes in and out of a Morpher has those of the mesh.
+  /// Components of the mesh that are x, y and z here: plane meshes across x or y are planned, and moved, as ones across
+  /// z. Everything in this plan has those; what goes in and out of a Morpher has those of the mesh.
   std::array<int, 3> axes{0, 1, 2};
 
   std::vector<Index32> known;  ///< as in BoundaryConditions: the order of boundary displacements
-  /// What puts given displacements back on slip surfaces before all else, of slots in `known`, and how far off it leaves them alone.
+  /// What puts given displacements back on slip surfaces before all else, of slots in `known`, and how far off it
+  /// leaves them alone.
   JointSlip given_slip;
   std::vector<double> given_tolerance;
   std::vector<Index32> driving;        ///< nodes of moving walls, ascending
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
-  /// Per driving node the first edges of the columns on it, unit, on the side to which the wall's normals look: those of node r from first_line[r] on.
+  /// Per driving node the first edges of the columns on it, unit, on the side to which the wall's normals look: those
+  /// of node r from first_line[r] on.
   std::vector<Index> first_line;
   std::vector<Vec3> lines;
   ColumnPlan columns;
   TurningBodies turns_of_bodies;
-  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements what it misses. By
-  /// NearFieldMethod::layers there is none, and layers carry all of it.
+  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements
+  /// what it misses. By NearFieldMethod::layers there is none, and layers carry all of it.
   InverseDistanceField walls;
-  /// What it is spread from behind the driving nodes: nodes of other boundaries among near elements that rules move, by their places in `known`.
+  /// What it is spread from behind the driving nodes: nodes of other boundaries among near elements that rules move, by
+  /// their places in `known`.
   std::vector<Index32> beside_slots;
   LayerRows near;
   std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
@@ -104,15 +110,15 @@ struct UnstructuredPlan {
   InterpolationOperator outer;  ///< `known` slots -> Plan::boundary_nodes of the background: what the outer box does
   InterpolationOperator far;    ///< background nodes -> nodes outside the wrap
 
-  /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all nodes. After
-  /// them the nodes of columns on walls that stand, which ask for what their wall does.
+  /// Boundary nodes beyond the moving walls: their residual (what is asked for minus the field so far) spreads over all
+  /// nodes. After them the nodes of columns on walls that stand, which ask for what their wall does.
   std::vector<Index32> residual_nodes;
   std::vector<Index32> residual_slot;  ///< in `known`, or -1
   /// Nodes of columns on walls that slip, the last of `residual_nodes`: they ask for what their wall node does.
   std::vector<Index32> sliding, sliding_root;
   CsrGraph residual_surfaces;  ///< slip surfaces, where not known
-  /// Nodes of `residual_nodes` that slide or have images begin with the field so far and what the residual of those with a slot adds there:
-  /// beside a wall that stands they stand.
+  /// Nodes of `residual_nodes` that slide or have images begin with the field so far and what the residual of those
+  /// with a slot adds there: beside a wall that stands they stand.
   struct Start {
     std::vector<Index32> given;       ///< nodes with a slot, boundary nodes first
     std::vector<Index32> given_slot;  ///< in `known`
@@ -141,7 +147,8 @@ struct UnstructuredPlan {
 
   std::vector<Index32> copies, copied;  ///< nodes that coincide with a representative, and that
   InterpolationOperator middle;         ///< further nodes of second-order elements: by the corners around them
-  /// Those of them on boundaries, once `middle` has moved them: `known` slots or -1, slip surfaces where not known, and who moves as one.
+  /// Those of them on boundaries, once `middle` has moved them: `known` slots or -1, slip surfaces where not known, and
+  /// who moves as one.
   struct MiddleBoundary {
     std::vector<Index32> node, slot;
     CsrGraph surfaces;
@@ -176,7 +183,8 @@ struct PreparedUnstructured {
   UnstructuredReport report;
   std::vector<UnstructuredReport> part_reports;  ///< of UnstructuredPlan::parts; `report` adds them up
   std::vector<std::string> notes;
-  /// Of UnstructuredPlan::known, which planning reckoned with: by the rules as they stand, or given to prepare(). None where ElementOptions::motion was given.
+  /// Of UnstructuredPlan::known, which planning reckoned with: by the rules as they stand, or given to prepare(). None
+  /// where ElementOptions::motion was given.
   std::optional<std::vector<Vec3>> displacement;
 
   /// The same, evaluated where planning did not; throws MotionError.
@@ -185,8 +193,9 @@ struct PreparedUnstructured {
   }
 };
 
-/// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost: linear in
-/// nodes and elements (n log n in those of boundaries and partially wrapped ones); about 1 kB of working memory per node.
+/// Resolves the rules and plans every stage. Throws MeshError for open boundary faces, MotionError, PlanError. Cost:
+/// linear in nodes and elements (n log n in those of boundaries and partially wrapped ones); about 1 kB of working
+/// memory per node.
 PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, Motion const& motion, PlanOptions const& options);
 inline PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const& topology,
@@ -194,8 +203,9 @@ inline PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const
                                     PlanOptions const& options) {
   return prepare(HostInstance(), mesh, topology, face_patches, motion, options);
 }
-/// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several plans of
-/// one mesh. displacement: of BoundaryConditions::known, to reckon with instead of what the rules give now and of ElementOptions::motion.
+/// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several
+/// plans of one mesh. displacement: of BoundaryConditions::known, to reckon with instead of what the rules give now and
+/// of ElementOptions::motion.
 PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
                              PlanOptions const& options, std::optional<std::vector<Vec3>> displacement = {});

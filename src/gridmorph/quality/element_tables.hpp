@@ -71,7 +71,8 @@ struct ElementTables {
   ElementViews<MemorySpace> elements;
   PolyhedronViews<MemorySpace> polyhedra;
   Vec3 plane_normal;
-  /// Of a mesh with polyhedra, which solvers take by faces, whatever types its elements have: those with J < 0 are what their pyramids are.
+  /// Of a mesh with polyhedra, which solvers take by faces, whatever types its elements have: those with J < 0 are what
+  /// their pyramids are.
   bool by_faces;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
@@ -99,8 +100,8 @@ struct ElementTables {
     if (n < kernels::n_curved_nodes(out.type)) kernels::curved::complete(out);
     return out;
   }
-  /// The pyramids of an element with J < 0 in a mesh that is taken by its faces, if all of them have volume: S . (f - x_c) > 0, what checkMesh of OpenFOAM
-  /// asks of every cell (primitiveMeshCheck, checkFacePyramids). take(pyramids)
+  /// The pyramids of an element with J < 0 in a mesh that is taken by its faces, if all of them have volume: S . (f -
+  /// x_c) > 0, what checkMesh of OpenFOAM asks of every cell (primitiveMeshCheck, checkFacePyramids). take(pyramids)
   template <class Points, class Take>
   KOKKOS_INLINE_FUNCTION bool is_sound_by_faces(Points const& points, Index e, double sign, Take const& take) const {
     if (!by_faces) return false;
@@ -154,8 +155,8 @@ struct ElementTables {
                        is_sound_by_faces(points, e, sign, [](kernels::polyhedron::Pyramids const&) {});
     return sound ? kernels::JacobianSign::positive : out;
   }
-  /// Of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is scaled; of curved elements what is
-  /// smaller, that of their corners or J anywhere against the element with straight edges.
+  /// Of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is scaled; of curved
+  /// elements what is smaller, that of their corners or J anywhere against the element with straight edges.
   template <class Points>
   KOKKOS_INLINE_FUNCTION double scaled_jacobian(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);
@@ -216,7 +217,8 @@ inline std::vector<Index> first_elements(Mesh const& mesh) {
   return first;
 }
 
-/// Largest volume ratio of element e to its neighbours (those not below 0); 1 without any, unbounded unless all volumes are positive.
+/// Largest volume ratio of element e to its neighbours (those not below 0); 1 without any, unbounded unless all volumes
+/// are positive.
 template <class VolumeView, class MemorySpace>
 KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<MemorySpace> const& neighbours, Index e) {
   double least = volumes(e), largest = least;
@@ -231,7 +233,8 @@ KOKKOS_INLINE_FUNCTION double worst_ratio(VolumeView const& volumes, CsrViews<Me
   return kernels::larger(largest / own, own / least);
 }
 
-/// What is on the other side of each side of each element as ElementSides has it, but through connections too; empty where none leads to an element.
+/// What is on the other side of each side of each element as ElementSides has it, but through connections too; empty
+/// where none leads to an element.
 std::vector<Index32> neighbours_across(UnstructuredTopology const& topology);
 
 /// What is behind a side that a connection leads from.

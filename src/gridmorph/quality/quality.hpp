@@ -59,26 +59,28 @@ struct MeasureStatistics {
   double worst = 0;
 };
 
-/// What a cell must not fall short of by a morph, [guard] of case files. A cell that was short of a limit in the baseline is no
-/// shortfall of the morph, unless it lost more than max_loss.
+/// What a cell must not fall short of by a morph, [guard] of case files. A cell that was short of a limit in the
+/// baseline is no shortfall of the morph, unless it lost more than max_loss.
 struct CellLimits {
   double min_determinant = 0.05;  ///< smallest 3x3x3 determinant
   double min_angle_deg = 2;       ///< smallest angle
   double max_skewness = 0.98;     ///< largest equiangle skewness
-  /// Largest loss, (before - after) / max(|before|, floor), of determinant 3x3x3 (floor 0.05) and of smallest angle (floor 1
-  /// degree): the floors keep small values that change by little from counting.
+  /// Largest loss, (before - after) / max(|before|, floor), of determinant 3x3x3 (floor 0.05) and of smallest angle
+  /// (floor 1 degree): the floors keep small values that change by little from counting.
   double max_loss = 0.9;
 };
 
 /// Ways in which cells can come out of a morph as they should not.
 enum class Fall {
-  inverted,  ///< a corner's Jacobian is negative that was not, or zero that was positive; value: it / the largest before
+  inverted,     ///< a corner's Jacobian is negative that was not, or zero that was positive; value: it / the largest
+                ///< before
   determinant,  ///< below min_determinant; value: the 3x3x3 determinant
   angle,        ///< below min_angle_deg; value: the angle
   skewness,     ///< above max_skewness; value: the skewness
   loss,         ///< not inverted, but above max_loss; value: the loss
   collapsed,    ///< an edge has no length that had one; no value
-  flat_before,  ///< no shortfall: no volume in the baseline, and little of the wrong sign now (kernels/flat_cells.hpp); value: the scaled Jacobian
+  flat_before,  ///< no shortfall: no volume in the baseline, and little of the wrong sign now (kernels/flat_cells.hpp);
+                ///< value: the scaled Jacobian
   count
 };
 
@@ -154,8 +156,8 @@ struct Certificate {
   Index flat_before = 0;  ///< negative somewhere by little, and without volume in the baseline: as Fall::flat_before
   Index negative = 0;     ///< somewhere inside out, or with a corner that is no number
   Index undecided = 0;    ///< too close to zero to tell; none in any mesh so far
-  /// Of those that are negative or undecided: those that were neither in the baseline (all without one), and the first of them in
-  /// mesh order; FallenCells::worst has no value.
+  /// Of those that are negative or undecided: those that were neither in the baseline (all without one), and the first
+  /// of them in mesh order; FallenCells::worst has no value.
   FallenCells broken;
 
   [[nodiscard]] bool holds() const { return broken.cells == 0; }
@@ -171,7 +173,8 @@ struct QualityReport {
   bool against_baseline = false;  ///< relative displacement and changes at walls were measured
   /// A verdict: only the numbers of cells, what fell, and smallest determinant and angle (without mean) were measured.
   bool fast = false;
-  /// Cells are elements: worst_cell[0] and NodeLocation::node[0] are one less than the number in the file, the rest is 0.
+  /// Cells are elements: worst_cell[0] and NodeLocation::node[0] are one less than the number in the file, the rest is
+  /// 0.
   bool unstructured = false;
   std::optional<Certificate> certificate;  ///< where somebody asked for one
 
@@ -198,8 +201,9 @@ struct WallFace {
   std::string group = {};  ///< WallGroup::name it counts for
 };
 
-/// Faces of the given patches (numbers in Mesh::patches). Patches that lie on no zone face or are no wider than one node
-/// have no surface normal and are left out. They are grouped by the first family of a patch, or its BC name without one.
+/// Faces of the given patches (numbers in Mesh::patches). Patches that lie on no zone face or are no wider than one
+/// node have no surface normal and are left out. They are grouped by the first family of a patch, or its BC name
+/// without one.
 std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches);
 
 /// Number of the first cell of each zone, and of all cells at the end: cells are numbered zone after zone, i fastest.
@@ -215,7 +219,8 @@ struct CellFields {
   [[nodiscard]] Kokkos::View<double*, MemorySpace>& operator[](Measure m) { return of[int(m)]; }
 };
 
-/// Cells to be measured by themselves as well, wherever they lie in near and far field. Boxes of one region do not overlap.
+/// Cells to be measured by themselves as well, wherever they lie in near and far field. Boxes of one region do not
+/// overlap.
 struct NamedCells {
   std::string name;
   std::vector<CellBox> boxes;
@@ -244,20 +249,20 @@ template <class Exec>
 std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline);
 
-/// Measures every cell and the walls. Returns numbers, so it fences. Cells that may have fallen short of the limits are compared
-/// with their baseline one by one; the rest of the baseline is read for relative displacements and walls only.
+/// Measures every cell and the walls. Returns numbers, so it fences. Cells that may have fallen short of the limits are
+/// compared with their baseline one by one; the rest of the baseline is read for relative displacements and walls only.
 ///
 /// Throws MeshError when Views are shorter than the mesh, or a wall or interface lies outside its zone.
-/// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 2 bytes per cell for partial sums, 48 bytes per
-/// node of the walls.
-/// Cost: one pass over the cells (about 1000 flops each, as many cells at once as the registers hold), one over the volumes, one each for
-/// growth and face area ratios (500 flops and 48 comparisons together); of regions once more.
+/// Memory: 8 bytes per cell for volumes (that field, where it is wanted), below 2 bytes per cell for partial sums, 48
+/// bytes per node of the walls. Cost: one pass over the cells (about 1000 flops each, as many cells at once as the
+/// registers hold), one over the volumes, one each for growth and face area ratios (500 flops and 48 comparisons
+/// together); of regions once more.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);
 
-/// Values of the given measures in every cell, (n_cells) each, in the order asked for, and nothing else: measure_quality() with
-/// fields.
+/// Values of the given measures in every cell, (n_cells) each, in the order asked for, and nothing else:
+/// measure_quality() with fields.
 template <class Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,

@@ -1,7 +1,8 @@
-// Quality of unstructured meshes: the measures, the report and the guarantees of quality.hpp, for elements of all types.
+// Quality of unstructured meshes: the measures, the report and the guarantees of quality.hpp, for elements of all
+// types.
 //
-// Formulas are written beside the device functions in gridmorph/kernels/element_quality.hpp, those of polyhedra in polyhedron_quality.hpp.
-// Hexahedra give the same numbers as the cells of a structured mesh.
+// Formulas are written beside the device functions in gridmorph/kernels/element_quality.hpp, those of polyhedra in
+// polyhedron_quality.hpp. Hexahedra give the same numbers as the cells of a structured mesh.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -33,20 +34,23 @@ struct UnstructuredQualityInput {
   CellFields<MemorySpace> fields;
   CellLimits limits = {};  ///< what elements are judged by against the baseline
   bool fast = false;       ///< only a verdict: half the time and no memory per element; no fields
-  /// Non-orthogonality and face skewness too, which solvers that work by faces ask for; not where `fast`. A third more time, 32 bytes per element.
+  /// Non-orthogonality and face skewness too, which solvers that work by faces ask for; not where `fast`. A third more
+  /// time, 32 bytes per element.
   bool faces = false;
   std::vector<NamedElements<MemorySpace>> regions = {};  ///< each costs as much as all; not looked at where `fast`
 };
 
-/// (n_elements) Signs of the elements' volumes in SIDS order, of polyhedra with their faces as they point. Host, parallel.
+/// (n_elements) Signs of the elements' volumes in SIDS order, of polyhedra with their faces as they point. Host,
+/// parallel.
 std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh);
 inline std::vector<signed char> volume_signs(Mesh const& mesh) { return volume_signs(HostInstance(), mesh); }
 
 /// (n_elements) +1, or -1 for elements that are numbered inside out. Whether two neighbours are numbered alike
-/// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the signs of
-/// elements that hang together are known but for one, which is that of most of their volumes. An element that is inverted
-/// among elements numbered like it is told from one that is numbered the other way and sound (hybrid meshes whose triangles run
-/// one way and quadrilaterals the other). Linear cost; where all volumes of a zone have one sign, nothing is looked at.
+/// follows from the side that they share: seen from one and from the other it must be named in opposite ways. So the
+/// signs of elements that hang together are known but for one, which is that of most of their volumes. An element that
+/// is inverted among elements numbered like it is told from one that is numbered the other way and sound (hybrid meshes
+/// whose triangles run one way and quadrilaterals the other). Linear cost; where all volumes of a zone have one sign,
+/// nothing is looked at.
 std::vector<signed char> numbering_signs(Mesh const& mesh, ElementSides const& sides,
                                          std::vector<signed char> const& volume_signs);
 std::vector<signed char> numbering_signs(HostInstance const& host, Mesh const& mesh, ElementSides const& sides);
@@ -69,8 +73,8 @@ std::vector<NegativeElements> negative_elements(Mesh const& mesh);
 /// "zone 'Fluid': 12 of 400 prisms are numbered inside out (negative volume), the first is prism 17".
 std::string describe(Mesh const& mesh, NegativeElements const& negative);
 
-/// Measures every element and the walls. Returns numbers, so it fences. Throws MeshError when Views are shorter than the mesh.
-/// Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
+/// Measures every element and the walls. Returns numbers, so it fences. Throws MeshError when Views are shorter than
+/// the mesh. Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
 template <class Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                               BoundaryFacePatches const& face_patches,

@@ -15,13 +15,13 @@ struct Validity {
   Index inverted = 0;               ///< cells whose determinant is negative, or that have a corner that is no number
 };
 
-/// The smallest determinant of a mesh at any time of its motion. Made once (fences `exec`); each call enqueues three kernels on the
-/// instance it is given and leaves its answer in memory of the device: no allocation, no fence, no copy. The same bits with
-/// any number of threads.
+/// The smallest determinant of a mesh at any time of its motion. Made once (fences `exec`); each call enqueues three
+/// kernels on the instance it is given and leaves its answer in memory of the device: no allocation, no fence, no copy.
+/// The same bits with any number of threads.
 ///
-/// Cost per cell: about 530 flops and its corners read once, 0.03 to 0.04 microseconds on one core. Memory: 60 bytes per thousand
-/// cells; of unstructured meshes a byte per element, and where the host's memory is out of reach the element lists. On
-/// the host these are the mesh's own, which must outlive the check. One call at a time.
+/// Cost per cell: about 530 flops and its corners read once, 0.03 to 0.04 microseconds on one core. Memory: 60 bytes
+/// per thousand cells; of unstructured meshes a byte per element, and where the host's memory is out of reach the
+/// element lists. On the host these are the mesh's own, which must outlive the check. One call at a time.
 template <class ExecutionSpace>
 class ValidityCheck {
  public:

@@ -174,7 +174,8 @@ class Drawing {
         xml_text(shortened(block.name, longest_name)), node_[b].x + node_width / 2, node_[b].y + 31, block.cells, more);
   }
 
-  /// From the lower edge of the upper block to the upper edge of the lower one; below both where they stand in one line.
+  /// From the lower edge of the upper block to the upper edge of the lower one; below both where they stand in one
+  /// line.
   void draw(BlockGraph::Interface const& face) {
     bool const is_along = std::find(along_.begin(), along_.end(), std::pair(face.a, face.b)) != along_.end();
     if (is_along && !face.periodic) return;  // the chain's arrow says so

@@ -15,7 +15,8 @@ namespace {
 
 /// Of the extent of a wall: nodes as near as that along it are one point of the profile.
 constexpr double same_station = 1e-9;
-/// Of its size: a wall whose nodes are farther from the profile than that is measured as it is, not as one of revolution.
+/// Of its size: a wall whose nodes are farther from the profile than that is measured as it is, not as one of
+/// revolution.
 constexpr double largest_scatter = 1e-5;
 
 }  // namespace
@@ -122,7 +123,8 @@ SurfaceWall::SurfaceWall(FacetList const& inward, std::vector<Vec3> const& stand
   if (!standing.empty()) find_holes(standing);
 }
 
-/// The surface has its normals on one side of each part that hangs together, whichever: most of the part's facets say which it is.
+/// The surface has its normals on one side of each part that hangs together, whichever: most of the part's facets say
+/// which it is.
 void SurfaceWall::find_sides(FacetList const& inward) {
   DisjointSets<int> parts(surface_.facets.size());
   for (std::size_t f = 0; f < surface_.facets.size(); ++f)

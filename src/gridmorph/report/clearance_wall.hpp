@@ -11,14 +11,16 @@
 
 namespace gridmorph {
 
-/// Distance of tip nodes from a wall, the shortest one. Negative where a node is on the other side of the wall than the mesh is: there it rubs.
+/// Distance of tip nodes from a wall, the shortest one. Negative where a node is on the other side of the wall than the
+/// mesh is: there it rubs.
 struct Clearance {
   double smallest = 0;
   double mean = 0;  ///< over the nodes
   Vec3 at{};        ///< the node of the smallest
 };
 
-/// What a distance is the shortest one to: the profile of a wall of revolution, in the meridional plane; or the wall's surface.
+/// What a distance is the shortest one to: the profile of a wall of revolution, in the meridional plane; or the wall's
+/// surface.
 enum class ClearanceMeasure { meridional, surface };
 std::string name_of(ClearanceMeasure measure);
 
@@ -60,8 +62,9 @@ class RevolutionWall final : public ClearanceWall {
 /// A wall of any shape: the smooth surface through its nodes.
 class SurfaceWall final : public ClearanceWall {
  public:
-  /// `inward`: facets right-handed about normals into the mesh. Where blades stand on the wall it has holes: `standing` are their nodes
-  /// there, of whose rims the tangent planes go on. Throws MotionError where no facet has an area. Cost: O(n log n) in the facets.
+  /// `inward`: facets right-handed about normals into the mesh. Where blades stand on the wall it has holes: `standing`
+  /// are their nodes there, of whose rims the tangent planes go on. Throws MotionError where no facet has an area.
+  /// Cost: O(n log n) in the facets.
   explicit SurfaceWall(FacetList const& inward, std::vector<Vec3> const& standing = {});
 
   [[nodiscard]] ClearanceMeasure measure() const override { return ClearanceMeasure::surface; }
@@ -80,7 +83,8 @@ class SurfaceWall final : public ClearanceWall {
   std::vector<char> stands_;       ///< per point, whether a blade has it; empty: none has
 };
 
-/// Numbers, in `blade`, of the nodes within a share of the blade's height of its end towards the wall; all of them for share 1.
+/// Numbers, in `blade`, of the nodes within a share of the blade's height of its end towards the wall; all of them for
+/// share 1.
 std::vector<std::size_t> tip_nodes(ClearanceWall const& wall, std::vector<Vec3> const& blade, double share);
 
 }  // namespace gridmorph

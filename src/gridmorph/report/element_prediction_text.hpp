@@ -16,8 +16,8 @@ std::string describe(Mesh const& mesh, ElementPrediction const& prediction);
 /// What to be warned of: elements that would be inverted, and relative displacements above the paper's 0.25.
 std::vector<std::string> prediction_warnings(Mesh const& mesh, ElementPrediction const& prediction);
 
-/// {"every", "of", "elements", "inverted", "determinant_3x3x3": {"value", "baseline", "element"}, "kept", "minimum_angle_deg",
-/// "relative_displacement", "regions": [{"name", ... as above}]}; elements as users know them.
+/// {"every", "of", "elements", "inverted", "determinant_3x3x3": {"value", "baseline", "element"}, "kept",
+/// "minimum_angle_deg", "relative_displacement", "regions": [{"name", ... as above}]}; elements as users know them.
 nlohmann::json prediction_json(Mesh const& mesh, ElementPrediction const& prediction);
 
 }  // namespace gridmorph

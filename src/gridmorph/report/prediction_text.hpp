@@ -17,8 +17,9 @@ std::string describe(Mesh const& mesh, Prediction const& prediction);
 /// What to be warned of: cells that would be inverted, and relative displacements above the paper's 0.25.
 std::vector<std::string> prediction_warnings(Mesh const& mesh, Prediction const& prediction);
 
-/// {"every", "cells", "inverted", "scaled_jacobian": {"value", "baseline", "zone", "cell": [i, j, k]}, "determinant_3x3x3",
-/// "minimum_angle_deg", "relative_displacement": {"i", "j", "k"}, "chains": [{"stage", "chain", ... as above}]}; cells 1-based.
+/// {"every", "cells", "inverted", "scaled_jacobian": {"value", "baseline", "zone", "cell": [i, j, k]},
+/// "determinant_3x3x3", "minimum_angle_deg", "relative_displacement": {"i", "j", "k"}, "chains": [{"stage", "chain",
+/// ... as above}]}; cells 1-based.
 nlohmann::json prediction_json(Mesh const& mesh, Prediction const& prediction);
 
 }  // namespace gridmorph

@@ -11,8 +11,8 @@ namespace gridmorph {
 /// "8 s", "3 min", "1.5 h": one or two digits are all that an estimate is worth.
 std::string duration_text(double seconds);
 
-/// "writing a.cgns, 40 %, about 12 s left"; `share` of all work done after `elapsed` seconds, nothing where the end is not known.
-/// The rest is estimated from two seconds and two percent on.
+/// "writing a.cgns, 40 %, about 12 s left"; `share` of all work done after `elapsed` seconds, nothing where the end is
+/// not known. The rest is estimated from two seconds and two percent on.
 std::string progress_text(std::string_view work, std::optional<double> share, double elapsed);
 
 /// Stages of known cost that follow one another.

@@ -14,11 +14,11 @@ namespace gridmorph {
 std::string format_table(QualityReport const& baseline, std::optional<QualityReport> const& morphed = {},
                          QualityThresholds const& thresholds = {});
 
-/// One line: of how many cells the Jacobian is not positive everywhere, and which is the first that was sound in the baseline. The report must
-/// have a certificate.
+/// One line: of how many cells the Jacobian is not positive everywhere, and which is the first that was sound in the
+/// baseline. The report must have a certificate.
 std::string certificate_text(QualityReport const& report);
-/// One line: how many cells were flat in the baseline and are inverted by so little that they count as flat, the worst of them; nothing
-/// where there are none.
+/// One line: how many cells were flat in the baseline and are inverted by so little that they count as flat, the worst
+/// of them; nothing where there are none.
 std::string flat_text(QualityReport const& report);
 
 /// The short table of the paper's Figure 14: largest aspect ratio and smallest 3x3x3 determinant.

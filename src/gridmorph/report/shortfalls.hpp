@@ -23,9 +23,10 @@ struct Shortfall {
   std::string message;  ///< what, value, threshold, worst cell with zone and 1-based i, j, k
 };
 
-/// Shortfalls of the morphed mesh, or of the baseline when there is no morphed one. Cells that were inverted, or beyond a limit, in
-/// the baseline already are warnings; how much they may lose is limited like that of all others (CellLimits::max_loss). The
-/// baseline is looked at for what it had and may be empty (a verdict knows by itself what fell).
+/// Shortfalls of the morphed mesh, or of the baseline when there is no morphed one. Cells that were inverted, or beyond
+/// a limit, in the baseline already are warnings; how much they may lose is limited like that of all others
+/// (CellLimits::max_loss). The baseline is looked at for what it had and may be empty (a verdict knows by itself what
+/// fell).
 std::vector<Shortfall> shortfalls(QualityReport const& baseline, std::optional<QualityReport> const& morphed,
                                   QualityThresholds const& thresholds);
 

@@ -21,7 +21,8 @@ using StepTimes = std::vector<StepTime>;
 /// One row per step and their sum: seconds, share of the sum, nodes per second where every node is touched.
 std::string format_times(StepTimes const& times, Index nodes);
 
-/// {"nodes": ..., "steps": [{"step", "seconds", "nodes_per_second" (null where it means nothing)}, ...], "total_seconds":
+/// {"nodes": ..., "steps": [{"step", "seconds", "nodes_per_second" (null where it means nothing)}, ...],
+/// "total_seconds":
 /// ...}.
 nlohmann::json times_json(StepTimes const& times, Index nodes);
 

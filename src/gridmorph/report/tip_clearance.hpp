@@ -23,8 +23,9 @@ struct TipClearance {
   ClearanceMeasure measure = ClearanceMeasure::meridional;  ///< of all three
 };
 
-/// Of many steps: a line per tip with the smallest clearance of all steps by the rule and in the mesh, and the steps they are in (from 1 on); the largest mean in the mesh
-/// beside the smallest. Precondition: every step has the same tips.
+/// Of many steps: a line per tip with the smallest clearance of all steps by the rule and in the mesh, and the steps
+/// they are in (from 1 on); the largest mean in the mesh beside the smallest. Precondition: every step has the same
+/// tips.
 std::string clearance_steps_table(std::vector<std::vector<TipClearance>> const& steps);
 
 /// A table with one line per tip, under its header.

@@ -83,7 +83,8 @@ class Row {
     return {out.begin(), out.end()};
   }
 
-  /// What hangs together of a blade's patch by its faces: in an H mesh of elements one patch has both sides, a pitch apart.
+  /// What hangs together of a blade's patch by its faces: in an H mesh of elements one patch has both sides, a pitch
+  /// apart.
   struct Piece {
     int patch = -1;
     std::vector<Index> nodes;
@@ -111,8 +112,8 @@ class Row {
     return out;
   }
 
-  /// Pieces that meet are of one blade. A piece whose nodes are `a` passages ahead meets another whose nodes are `b` ahead:
-  /// their blades' numbers differ by a - b.
+  /// Pieces that meet are of one blade. A piece whose nodes are `a` passages ahead meets another whose nodes are `b`
+  /// ahead: their blades' numbers differ by a - b.
   void number_blades(SharedNodes const& all) {
     std::vector<Piece> const pieces = pieces_of_blades();
     struct Meeting {

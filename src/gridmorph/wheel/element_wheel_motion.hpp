@@ -1,4 +1,5 @@
-// The motion of a wheel of elements whose passages have blades of their own: one plan, boundary displacements per passage.
+// The motion of a wheel of elements whose passages have blades of their own: one plan, boundary displacements per
+// passage.
 #pragma once
 
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -19,13 +20,15 @@ struct WheelTimes {
   std::function<std::vector<Motion>(int step)> motions = {};
 };
 
-/// WheelMotion of a mesh of elements. Its plan knows both sides of a periodic connection that a rule moves, so passages need no opening:
-/// where blades differ every node of the periodic sides must be known, by a rule of the connection or of patches on it.
+/// WheelMotion of a mesh of elements. Its plan knows both sides of a periodic connection that a rule moves, so passages
+/// need no opening: where blades differ every node of the periodic sides must be known, by a rule of the connection or
+/// of patches on it.
 class ElementWheelMotion {
  public:
-  /// sector: checked, with what follows from it; its periodic connections pass find_rows; outlives this. motions: one per different blade, as in WheelMotion. The plan
-  /// reckons with the passage whose boundary moves most, at any of the times, or with options.elements.motion. Of one motion it is the plan of the sector.
-  /// Throws MotionError, PlanError or MeshError. Cost: one plan, and the rules once per motion.
+  /// sector: checked, with what follows from it; its periodic connections pass find_rows; outlives this. motions: one
+  /// per different blade, as in WheelMotion. The plan reckons with the passage whose boundary moves most, at any of the
+  /// times, or with options.elements.motion. Of one motion it is the plan of the sector. Throws MotionError, PlanError
+  /// or MeshError. Cost: one plan, and the rules once per motion.
   ElementWheelMotion(Mesh const& sector, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
                      PassageLinks const& links, WheelRows const& rows, std::vector<Motion> const& motions,
                      SameRules same_rules, PlanOptions options, std::vector<WheelRowBlades> const& blades,

@@ -9,10 +9,10 @@
 
 namespace gridmorph {
 
-/// The sector mesh with the periodic interfaces of some rows turned into patches of kind `periodic`, and the resolution that
-/// goes with it: patch and rule numbers stay, the new patches follow with the rule of their interface. Rules that look at their
-/// row (slide, follow, sections, target) are there as functions without a value: plans ask only whether a rule is explicit.
-/// Coordinates are shared with the sector mesh.
+/// The sector mesh with the periodic interfaces of some rows turned into patches of kind `periodic`, and the resolution
+/// that goes with it: patch and rule numbers stay, the new patches follow with the rule of their interface. Rules that
+/// look at their row (slide, follow, sections, target) are there as functions without a value: plans ask only whether a
+/// rule is explicit. Coordinates are shared with the sector mesh.
 struct OpenedPassage {
   Mesh mesh;
   ResolvedMotion motion;

@@ -1,4 +1,5 @@
-// Where the zones of a passage meet each other and, across its periodic sides, the neighbouring passages: of blocks and of elements alike.
+// Where the zones of a passage meet each other and, across its periodic sides, the neighbouring passages: of blocks and
+// of elements alike.
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
@@ -9,8 +10,8 @@
 
 namespace gridmorph {
 
-/// One direction of a 1-to-1 interface of blocks, or of a connection of elements, node by node. Every one has its reverse in the same
-/// list, stored in the file or not.
+/// One direction of a 1-to-1 interface of blocks, or of a connection of elements, node by node. Every one has its
+/// reverse in the same list, stored in the file or not.
 struct PassageLink {
   int connection = -1;  ///< number in connections_of()
   int zone = -1;
@@ -33,11 +34,12 @@ struct PassageLinks {
 
 /// Of a mesh of blocks, in the order of `links`. Cost: O(interface nodes).
 PassageLinks passage_links(Mesh const& mesh, Links const& links, TopologyOptions const& options);
-/// Of a mesh of elements, in the order of its connections, which pair nodes within 1e-6 of the mesh size. Cost: O(n log n) in the nodes
-/// of connections.
+/// Of a mesh of elements, in the order of its connections, which pair nodes within 1e-6 of the mesh size. Cost: O(n log
+/// n) in the nodes of connections.
 PassageLinks passage_links(Boundary const& boundary);
 
-/// "periodic interface 'per_i' (zone 'Zone 1' i_min [1:1, 1:33, 1:9])", of elements "periodic connection 'per' (zone 'Fluid')".
+/// "periodic interface 'per_i' (zone 'Zone 1' i_min [1:1, 1:33, 1:9])", of elements "periodic connection 'per' (zone
+/// 'Fluid')".
 std::string describe(Mesh const& mesh, PassageLink const& link);
 
 }  // namespace gridmorph

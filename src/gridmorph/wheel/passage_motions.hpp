@@ -15,8 +15,8 @@ struct WheelRowBlades {
   std::vector<int> blades;  ///< which motion each has; as many as passages. Beyond the last comes the first again.
 };
 
-/// Motions that are an earlier one at another time, as blades of a travelling wave are: the number of that, per motion; itself for the
-/// others.
+/// Motions that are an earlier one at another time, as blades of a travelling wave are: the number of that, per motion;
+/// itself for the others.
 using SameRules = std::vector<int>;
 /// For motions of which none is another one's.
 SameRules all_differ(std::size_t motions);
@@ -28,7 +28,8 @@ std::vector<int> used_motions(std::vector<WheelRowBlades> const& blades);
 /// Per row whether its blades differ: then its periodic sides move independently.
 std::vector<char> open_rows(std::vector<WheelRowBlades> const& blades);
 
-/// Boundary nodes of a plan that serves all passages, with their displacements by each motion. Passages are in the frame of the sector mesh.
+/// Boundary nodes of a plan that serves all passages, with their displacements by each motion. Passages are in the
+/// frame of the sector mesh.
 class PassageMotions {
  public:
   struct Node {

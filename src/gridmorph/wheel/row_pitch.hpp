@@ -23,7 +23,8 @@ class Pitches {
   bool shifts_ = false;
 };
 
-/// Where a point lies in its row. Points that differ in `along` alone are at the same place of different passages, or beside each other.
+/// Where a point lies in its row. Points that differ in `along` alone are at the same place of different passages, or
+/// beside each other.
 struct PlaceInRow {
   double first, second;  ///< wheel: axial position and radius; straight row:
                          ///< across the pitch [length]
@@ -59,8 +60,9 @@ class RowPitch {
     return is_straight() ? difference : near + std::remainder(difference - near, double(passages_));
   }
 
-  /// (1 - w) of a and w of b for the point x: in a wheel in cylindrical components, so that two motions that keep radius or axial position share to
-  /// one that does; in a straight row in Cartesian ones. Equal motions come back bit for bit.
+  /// (1 - w) of a and w of b for the point x: in a wheel in cylindrical components, so that two motions that keep
+  /// radius or axial position share to one that does; in a straight row in Cartesian ones. Equal motions come back bit
+  /// for bit.
   [[nodiscard]] Vec3 share_motion(Vec3 const& x, Vec3 const& a, Vec3 const& b, double w) const;
 
  private:

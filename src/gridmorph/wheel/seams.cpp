@@ -25,13 +25,15 @@ void Seams::close(int passage, Coordinates& x) {
       points.known[m.group] = 1;
       points.position[m.group] = round_the_end(count, m.group).value_or(x[m.node]);
     }
-    // As it is kept, with no turn in between: all nodes at one place have the same bits, where the ends of a part meet too.
+    // As it is kept, with no turn in between: all nodes at one place have the same bits, where the ends of a part meet
+    // too.
     Vec3 const decided = points.position[m.group];
     double const gap = distance(decided, x[m.node]);
     if (gap > gap_.distance) gap_ = {gap, m.node, passage};
     x.set(m.node, decided);
   }
-  // Forget what no later passage meets: later ones reach down to passage + 1 + lowest_, and round the end to the first ones.
+  // Forget what no later passage meets: later ones reach down to passage + 1 + lowest_, and round the end to the first
+  // ones.
   std::erase_if(open_, [&](auto const& entry) {
     int const count = entry.first;
     bool const met_ahead = count >= passage + 1 + lowest_;

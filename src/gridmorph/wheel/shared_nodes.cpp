@@ -7,7 +7,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Union-find whose members know how many passages they are ahead of their root: (n, p) is the point (root, p + offset).
+/// Union-find whose members know how many passages they are ahead of their root: (n, p) is the point (root, p +
+/// offset).
 class Unions {
  public:
   explicit Unions(std::size_t n) : parent_(n), offset_(n, 0), axis_(n, 0) {

@@ -8,8 +8,8 @@
 
 namespace gridmorph {
 
-/// The turn by step / steps of 360 degrees, right-handed about the axis. No turn and quarter turns are exact: cosine and
-/// sine come from an angle of at most 45 degrees, and no turn gives back a point bit for bit.
+/// The turn by step / steps of 360 degrees, right-handed about the axis. No turn and quarter turns are exact: cosine
+/// and sine come from an angle of at most 45 degrees, and no turn gives back a point bit for bit.
 class Turn {
  public:
   /// Any step, negative ones and full turns too; steps > 0.

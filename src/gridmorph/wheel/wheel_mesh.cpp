@@ -98,7 +98,8 @@ class Builder {
     }
   }
 
-  /// Per face of a patch of elements the periodic link of its zone on whose side it lies, or -1; of a patch of nodes one entry.
+  /// Per face of a patch of elements the periodic link of its zone on whose side it lies, or -1; of a patch of nodes
+  /// one entry.
   [[nodiscard]] std::vector<int> sides_of(Patch const& patch) const {
     std::vector<int> out(std::size_t(std::max<Index>(1, patch.faces.size())), -1);
     for (int const l : links_.of_zone[patch.zone]) {

@@ -1,4 +1,5 @@
-// The motion of a wheel of blocks whose passages have blades of their own: one plan, boundary displacements per passage.
+// The motion of a wheel of blocks whose passages have blades of their own: one plan, boundary displacements per
+// passage.
 #pragma once
 
 #include <gridmorph/plan/make_plan.hpp>
@@ -14,17 +15,16 @@ namespace gridmorph {
 
 /// Plans one passage for all, and evaluates the blades.
 ///
-/// Rows whose blades are all alike are planned as they stand, with their periodic interfaces. In the others the two periodic sides
-/// of a passage become boundaries that move independently: what the rules say of a single blade, as if the whole wheel had it, is
-/// evaluated for every blade, and shared between neighbouring blades as blade_share.hpp says. So both passages beside a periodic
-/// side move it alike.
+/// Rows whose blades are all alike are planned as they stand, with their periodic interfaces. In the others the two
+/// periodic sides of a passage become boundaries that move independently: what the rules say of a single blade, as if
+/// the whole wheel had it, is evaluated for every blade, and shared between neighbouring blades as blade_share.hpp
+/// says. So both passages beside a periodic side move it alike.
 class WheelMotion {
  public:
-  /// sector: with complete patches (connect_and_check); its periodic interfaces pass find_rows; outlives this. motions: one per different
-  /// blade; they may differ in rules that give a displacement of their own (rigid, function, sections, target, inflate) alone. rows: per
-  /// WheelRows::rows.
-  /// Throws MotionError, PlanError or MeshError. Cost: one plan, and the rules once per motion; what they share at different times once
-  /// per motion that is no other one's.
+  /// sector: with complete patches (connect_and_check); its periodic interfaces pass find_rows; outlives this. motions:
+  /// one per different blade; they may differ in rules that give a displacement of their own (rigid, function,
+  /// sections, target, inflate) alone. rows: per WheelRows::rows. Throws MotionError, PlanError or MeshError. Cost: one
+  /// plan, and the rules once per motion; what they share at different times once per motion that is no other one's.
   WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRows const& rows, std::vector<Motion> const& motions,
               SameRules same_rules, PlanOptions const& options, std::vector<WheelRowBlades> const& blades);
 

@@ -1,5 +1,5 @@
-// Morphs a curved mesh and writes the bits of its coordinates. Calls the inline functions of the public headers itself, so that
-// its object file holds copies of them, compiled with its own options.
+// Morphs a curved mesh and writes the bits of its coordinates. Calls the inline functions of the public headers itself,
+// so that its object file holds copies of them, compiled with its own options.
 #include <gridmorph/gridmorph.hpp>
 
 #include <cstdio>

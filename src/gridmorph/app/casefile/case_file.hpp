@@ -47,7 +47,8 @@ struct OutputOptions {
   std::optional<std::filesystem::path> report;  ///< JSON report
   std::optional<std::filesystem::path> page;    ///< the report as a page (HTML)
   std::optional<std::filesystem::path> vtk;     ///< the morphed mesh with these fields, for viewers
-  /// Folder for what a morph goes through: the mesh after each stage of blocks; the wrap and the background mesh, before and after, of elements.
+  /// Folder for what a morph goes through: the mesh after each stage of blocks; the wrap and the background mesh,
+  /// before and after, of elements.
   std::optional<std::filesystem::path> stages;
 };
 
@@ -77,7 +78,8 @@ struct SequenceOptions {
     return times.empty() ? period * periods_at(step) : times[std::size_t(step)];
   }
   [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
-  /// All steps, of longer sequences `most` of them, spread evenly, the first and the last one among them: what is looked at ahead of time.
+  /// All steps, of longer sequences `most` of them, spread evenly, the first and the last one among them: what is
+  /// looked at ahead of time.
   [[nodiscard]] std::vector<int> some_steps(int most) const {
     std::vector<int> out;
     int const n = std::min(steps, most);
@@ -148,16 +150,18 @@ struct CaseFile {
 /// A rule at a moment, times a factor. Throws MotionError where its amplitude is not finite; `where`: of the rule.
 Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& when, double factor = 1);
 
-/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand. Throws
-/// MotionError where an amplitude is not finite.
+/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand.
+/// Throws MotionError where an amplitude is not finite.
 Motion motion_at(CaseFile const& case_file, Moment const& when);
 
-/// The rules with every amplitude times `share`: rigid motions turn by that share of their angle, targets are approached by that share of the way.
+/// The rules with every amplitude times `share`: rigid motions turn by that share of their angle, targets are
+/// approached by that share of the way.
 Motion fraction_of(CaseFile const& case_file, double share);
 /// Makes that the motion of the case file.
 void take_fraction(CaseFile& case_file, double share);
 
-/// A case file as it stands, parsed once: which mesh it names is asked before Kokkos runs, the rest after. Copies share it.
+/// A case file as it stands, parsed once: which mesh it names is asked before Kokkos runs, the rest after. Copies share
+/// it.
 class CaseDocument {
  public:
   /// Throws ConfigError for a file that cannot be read, and for one that is not TOML.
@@ -176,18 +180,19 @@ class CaseDocument {
   std::shared_ptr<Root const> root_;
 };
 
-/// What a case file says, with the displacement files that it names. Throws one ConfigError that lists every problem, each as
-/// "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
+/// What a case file says, with the displacement files that it names. Throws one ConfigError that lists every problem,
+/// each as "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
 CaseFile read_case_file(CaseDocument const& document);
 inline CaseFile read_case_file(std::filesystem::path const& path) { return read_case_file(CaseDocument(path)); }
 
-/// As what the reader reads a key: "string", "number", "whole number", "true or false", "list of numbers", "[x, y, z]", "string or list",
-/// "table", "list of tables"; the words that it chooses from.
+/// As what the reader reads a key: "string", "number", "whole number", "true or false", "list of numbers", "[x, y, z]",
+/// "string or list", "table", "list of tables"; the words that it chooses from.
 struct KeyReading {
   std::set<std::string> as;
   std::vector<std::string> words;
 };
-/// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of the docs.
+/// (table, key) pairs that the reader asked for, tables as "mesh", "mesh axis", "motion": what it knows, for checks of
+/// the docs.
 using CaseKeyUse = std::map<std::pair<std::string, std::string>, KeyReading>;
 
 /// The same from text (see CaseDocument). `asked`, when given, is filled also when there are problems.

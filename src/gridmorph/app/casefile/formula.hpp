@@ -27,8 +27,8 @@ struct FormulaComponent {
 };
 
 /// Makes a rule from three expressions in x, y, z, r, theta and axial (position relative to the axis; theta in radians,
-/// right-handed about the axis, zero along the coordinate axis that follows the axis' dominant one in the cycle x, y, z;
-/// for an x axis theta = atan2(z, y)), the user's constants, `pi` and `deg` (pi / 180).
+/// right-handed about the axis, zero along the coordinate axis that follows the axis' dominant one in the cycle x, y,
+/// z; for an x axis theta = atan2(z, y)), the user's constants, `pi` and `deg` (pi / 180).
 ///
 /// Problems of the expressions are added to `problems` with place, position and the nearest known name. The rule throws
 /// MotionError when a component is not finite, naming the point. Evaluations may come from several threads; they take
@@ -36,14 +36,14 @@ struct FormulaComponent {
 FunctionRule make_formula(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
                           std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
 
-/// The same at a moment of a sequence, with the variables `t` (time) and `step` (1, 2, ...), times a share of each component (so
-/// half of a turn by dtheta is a turn by half the angle).
+/// The same at a moment of a sequence, with the variables `t` (time) and `step` (1, 2, ...), times a share of each
+/// component (so half of a turn by dtheta is a turn by half the angle).
 using FormulaAt = std::function<FunctionRule(double share, Moment const& when)>;
 FormulaAt make_formula_in_time(FormulaFrame frame, std::array<FormulaComponent, 3> const& components,
                                std::map<std::string, double> const& constants, Axis const& axis, Problems& problems);
 
-/// Heights of an inflated surface: an expression in the position, t and step as above, and in span_fraction, chord_fraction and side of
-/// SurfacePlace, unless constants have these names. Problems and errors as above.
+/// Heights of an inflated surface: an expression in the position, t and step as above, and in span_fraction,
+/// chord_fraction and side of SurfacePlace, unless constants have these names. Problems and errors as above.
 using HeightAt =
     std::function<void(std::span<SurfacePlace const> places, std::span<double> height, Moment const& when)>;
 HeightAt make_height_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,
@@ -52,13 +52,14 @@ HeightAt make_height_formula(FormulaComponent const& formula, std::map<std::stri
 bool uses_sections(std::string const& expression, std::map<std::string, double> const& constants);
 bool uses_side(std::string const& expression, std::map<std::string, double> const& constants);
 
-/// A number that depends on `t`, `step` and the constants alone. Problems are added as above, also for names of the position.
+/// A number that depends on `t`, `step` and the constants alone. Problems are added as above, also for names of the
+/// position.
 std::function<double(Moment const& when)> make_time_formula(FormulaComponent const& formula,
                                                             std::map<std::string, double> const& constants,
                                                             Problems& problems);
 
-/// w(t), t the fraction of a grid line's length, of t and the constants alone; not a number where the expression has no value. Problems are
-/// added as above.
+/// w(t), t the fraction of a grid line's length, of t and the constants alone; not a number where the expression has no
+/// value. Problems are added as above.
 std::function<double(double t)> make_law_formula(FormulaComponent const& formula,
                                                  std::map<std::string, double> const& constants, Problems& problems);
 

@@ -16,7 +16,8 @@ struct CaseUse {
 };
 
 /// Throws one ConfigError that lists every key of the case file without an effect on such a run, each as
-/// "file:line: key, why, what to do". Keys of [wheel] may stand beside those of a single morph, because one case file serves both.
+/// "file:line: key, why, what to do". Keys of [wheel] may stand beside those of a single morph, because one case file
+/// serves both.
 void refuse_ignored_keys(CaseFile const& case_file, CaseUse const& use);
 
 }  // namespace gridmorph

@@ -9,8 +9,8 @@ namespace gridmorph::casefile {
 
 /// All texts live as long as the program.
 struct KeyDescription {
-  /// "top level", "mesh", "mesh axis" (a table in a table), "motion" (keys of every rule), "motion rigid" and "motion rigid rotation" (of
-  /// one rule).
+  /// "top level", "mesh", "mesh axis" (a table in a table), "motion" (keys of every rule), "motion rigid" and "motion
+  /// rigid rotation" (of one rule).
   std::string_view table;
   std::string_view key;      ///< "<name>": any name
   std::string_view type;     ///< "string", "number > 0", "[x, y, z]", "\"plane\" or \"baseline\"", ...
@@ -22,8 +22,8 @@ struct KeyDescription {
 /// Every key, table by table (keys.txt).
 std::vector<KeyDescription> const& key_list();
 
-/// A key as the reader meets it: in the table "mesh axis" or "motion rotation", of the rule "rigid"; tables of steps and blades are those
-/// of the rule. Null where the list does not have it.
+/// A key as the reader meets it: in the table "mesh axis" or "motion rotation", of the rule "rigid"; tables of steps
+/// and blades are those of the rule. Null where the list does not have it.
 KeyDescription const* find_key(std::string_view table, std::string_view rule, std::string_view key);
 
 /// "key: what it is (number > 0, length)".

@@ -16,7 +16,8 @@ namespace {
 constexpr double smooth = 0.866;  // cosine of 30 degrees
 constexpr double limit = 1e-6;    // of the mesh size
 
-/// Two nodes of an edge by their numbers as coincident points, and the normal of the cell that ends there, into the mesh.
+/// Two nodes of an edge by their numbers as coincident points, and the normal of the cell that ends there, into the
+/// mesh.
 struct Edge {
   std::pair<Index, Index> nodes;
   std::size_t patch;

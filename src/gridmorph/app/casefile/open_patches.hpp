@@ -10,7 +10,8 @@ namespace gridmorph {
 
 /// A name for each of the patches `first`, `first` + 1, ... of a mesh, which are rectangles of zone faces:
 /// - a plane on a limit of the mesh is "x_min" ... "z_max";
-/// - what keeps off the limits in two directions or more (one in a 2-D mesh), with all that joins it at whatever angle, is "body", or
+/// - what keeps off the limits in two directions or more (one in a 2-D mesh), with all that joins it at whatever angle,
+/// is "body", or
 ///   "body 1", "body 2", ... by the zones they begin in: six faces round a box are one body;
 /// - the rest is joined where it goes on smoothly (30 degrees) and called "surface", or "surface 1", ...;
 /// - poles keep the name "pole".

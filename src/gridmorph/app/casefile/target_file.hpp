@@ -11,10 +11,10 @@
 namespace gridmorph {
 
 /// Reads section profiles: lines of x, y, z with sections set apart by blank lines or by lines that begin with '#' and
-/// may name the next section; or lines of section, x, y, z, where a new section begins when the first column changes. Columns are
-/// separated by commas, semicolons, tabs or blanks; one header line is allowed. Throws ConfigError (file:line, what was
-/// found) for lines that cannot be read, values that are not finite, and sections of fewer than 5 points; at most ten
-/// problems are listed. Cost O(size of the file).
+/// may name the next section; or lines of section, x, y, z, where a new section begins when the first column changes.
+/// Columns are separated by commas, semicolons, tabs or blanks; one header line is allowed. Throws ConfigError
+/// (file:line, what was found) for lines that cannot be read, values that are not finite, and sections of fewer than 5
+/// points; at most ten problems are listed. Cost O(size of the file).
 std::vector<TargetSection> read_target_sections(std::filesystem::path const& path);
 std::vector<TargetSection> parse_target_sections(std::string_view text, std::string const& source);
 
@@ -23,8 +23,8 @@ std::vector<TargetSection> parse_target_sections(std::string_view text, std::str
 std::vector<Vec3> read_target_nodes(std::filesystem::path const& path);
 std::vector<Vec3> parse_target_nodes(std::string_view text, std::string const& source);
 
-/// The target of a rule from whatever file holds it, by the end of its name: .stl; .cgns, .cgn, .adf, .hdf, .h5; all others
-/// are text. Throws ConfigError.
+/// The target of a rule from whatever file holds it, by the end of its name: .stl; .cgns, .cgn, .adf, .hdf, .h5; all
+/// others are text. Throws ConfigError.
 struct TargetSource {
   std::filesystem::path file;
   std::vector<std::string> patches;  ///< CGNS: patches of a volume mesh; empty: the file holds surfaces

@@ -14,8 +14,9 @@ struct Moment {
   int step = 1;        ///< 1, 2, ...
 };
 
-/// A rule as it is at a moment, times `share`: rigid motions by their parameters (make_rigid_steps), sections by their tables, formulas
-/// and fields by their displacement, targets and contours by the way to the surface, inflated surfaces by the height, lattices by the displacement of their control points.
+/// A rule as it is at a moment, times `share`: rigid motions by their parameters (make_rigid_steps), sections by their
+/// tables, formulas and fields by their displacement, targets and contours by the way to the surface, inflated surfaces
+/// by the height, lattices by the displacement of their control points.
 using RuleAt = std::function<Rule(double share, Moment const& when)>;
 
 /// What a case file says of a rule beside what it is at the beginning.

@@ -88,7 +88,8 @@ std::optional<std::string> guess_plane(MeshSummary const& s, BoundaryShape const
   return text;
 }
 
-/// A line of a 2-D mesh about its axis; whatever else such a line is, its points have one axial position, or as many as there are.
+/// A line of a 2-D mesh about its axis; whatever else such a line is, its points have one axial position, or as many as
+/// there are.
 std::optional<std::string> guess_arc(CylindricalFrame const& frame, std::vector<Vec3> const& points) {
   double low = Box::inf, high = -Box::inf;
   for (Vec3 const& p : points) {

@@ -16,8 +16,8 @@ struct BoundaryShape {
 /// The nodes of each boundary of a structured mesh, patch by patch; none for ranges outside their zone.
 std::vector<BoundaryShape> shapes_of(Mesh const& mesh, MeshSummary const& summary);
 
-/// Fills BoundarySummary::guess, flat and enclosed. shapes[b] belongs to boundary b. Lines of a 2-D mesh in a plane x, y or z = constant are
-/// looked at as walls across their plane. Cost: O(nodes).
+/// Fills BoundarySummary::guess, flat and enclosed. shapes[b] belongs to boundary b. Lines of a 2-D mesh in a plane x,
+/// y or z = constant are looked at as walls across their plane. Cost: O(nodes).
 void guess_roles(Coordinates const& coordinates, std::vector<BoundaryShape> const& shapes, MeshSummary& summary);
 
 }  // namespace gridmorph::cli

@@ -83,7 +83,8 @@ bool is_around_a_body(BoundarySummary const& b, MeshSummary const& s) {
   });
 }
 
-/// The type decides, then the name, then the shape: `Null` and `UserDefined` types say nothing, and neither do many names.
+/// The type decides, then the name, then the shape: `Null` and `UserDefined` types say nothing, and neither do many
+/// names.
 Role role_of(BoundarySummary const& b, MeshSummary const& s) {
   auto const is = [&](PatchKind kind) { return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end(); };
   bool const round = s.axis && looks_like(b, "surface of revolution");
@@ -115,8 +116,9 @@ bool is_kind(BoundarySummary const& b, PatchKind kind) {
   return std::find(b.kinds.begin(), b.kinds.end(), kind) != b.kinds.end();
 }
 
-/// Where no wall is known by type, name or neighbours: a body in the flow is enclosed, and its cells are thin. No plane is one, and nothing that is
-/// all of the boundary. Walls by type or name come first, then what nothing is said about, then all others; -1: there is nothing like one.
+/// Where no wall is known by type, name or neighbours: a body in the flow is enclosed, and its cells are thin. No plane
+/// is one, and nothing that is all of the boundary. Walls by type or name come first, then what nothing is said about,
+/// then all others; -1: there is nothing like one.
 int most_like_a_body(MeshSummary const& s, std::vector<Role> const& roles) {
   int best = -1;
   std::array<double, 4> best_rank{};
@@ -193,8 +195,8 @@ std::vector<std::vector<int>> joined(MeshSummary const& s, std::vector<Role> con
   return out;
 }
 
-/// A path as a file in `folder` should name it. Links on the way to the folder are resolved, because ".." goes up from what they lead
-/// to; the name of the file itself is kept.
+/// A path as a file in `folder` should name it. Links on the way to the folder are resolved, because ".." goes up from
+/// what they lead to; the name of the file itself is kept.
 std::string path_from(std::filesystem::path const& folder, std::filesystem::path const& file) {
   namespace fs = std::filesystem;
   std::error_code failed;
@@ -208,7 +210,8 @@ std::string path_from(std::filesystem::path const& folder, std::filesystem::path
   return (way / file.filename()).lexically_normal().string();
 }
 
-/// The name of the morphed mesh: that of the input with "_morphed" before its ending, which of binary UGRID has two parts; folders have none.
+/// The name of the morphed mesh: that of the input with "_morphed" before its ending, which of binary UGRID has two
+/// parts; folders have none.
 std::string morphed_name(std::filesystem::path const& input, bool cgns) {
   namespace fs = std::filesystem;
   std::string const added = "_morphed";
@@ -337,7 +340,8 @@ class Snippet {
   void others() {
     bool const one_blade = blade_ >= 0;
     std::vector<int> planes, loose, far, rest, ranked, slides;
-    // A wall goes off what is curved as it moves, and slip would undo its motion there; overset boundaries are no surface of anything.
+    // A wall goes off what is curved as it moves, and slip would undo its motion there; overset boundaries are no
+    // surface of anything.
     auto const sort_in = [&](int b, std::vector<int>& standing) {
       bool const meets = meets_a_moving_one(b);
       bool const overset = is_kind(s_.boundaries[std::size_t(b)], PatchKind::connection);

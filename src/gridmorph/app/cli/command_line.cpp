@@ -270,7 +270,8 @@ std::string option_like(std::string const& word, std::vector<std::string> const&
   return has(short_names, other) ? "-" + other : "";
 }
 
-/// "unknown option '-V'; did you mean '--version'?" for the first option that neither the program nor the command has; empty where all are known.
+/// "unknown option '-V'; did you mean '--version'?" for the first option that neither the program nor the command has;
+/// empty where all are known.
 std::string unknown_option(CLI::App const& app, CLI::App const* command, int argc, char const* const* argv) {
   std::vector<std::string> long_names, short_names;
   for (CLI::App const* one : {&app, command}) {

@@ -27,20 +27,20 @@ MeshForMessages for_messages(Mesh const& mesh);
 /// `boundary`: of the plan of `mesh`.
 MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary);
 
-/// The worst of the cells that a morph inverted: "the worst is zone 'A' cell (i 3, j 1, k 7) at (1, 2, 3), 0.002 from patch 'blade'
-/// in the baseline: its smallest corner Jacobian is -35.2 times the largest it had". Empty where none is. Cost: nodes of all
-/// patches.
+/// The worst of the cells that a morph inverted: "the worst is zone 'A' cell (i 3, j 1, k 7) at (1, 2, 3), 0.002 from
+/// patch 'blade' in the baseline: its smallest corner Jacobian is -35.2 times the largest it had". Empty where none is.
+/// Cost: nodes of all patches.
 std::string describe_worst_inverted(MeshForMessages const& mesh, QualityReport const& quality,
                                     Coordinates const& morphed);
 
-/// The first cell that a certificate says is broken, or the worst inverted one where there is none: "zone 'A' cell (i 3, j 1, k 7) is inside out, at (1, 2, 3), ...
-/// from patch 'blade'". Empty where all are sound.
+/// The first cell that a certificate says is broken, or the worst inverted one where there is none: "zone 'A' cell (i
+/// 3, j 1, k 7) is inside out, at (1, 2, 3), ... from patch 'blade'". Empty where all are sound.
 std::string describe_first_broken(MeshForMessages const& mesh, QualityReport const& quality,
                                   Coordinates const& morphed);
 
-/// What may be wrong with the rules of a case file whose mesh came out bad: displacements larger than what they move and points
-/// far from their patches (another unit), axes of rotation that are far away. One sentence each. Cost: nodes of the patches that
-/// the rules name.
+/// What may be wrong with the rules of a case file whose mesh came out bad: displacements larger than what they move
+/// and points far from their patches (another unit), axes of rotation that are far away. One sentence each. Cost: nodes
+/// of the patches that the rules name.
 std::vector<std::string> likely_causes(CaseFile const& case_file, MeshForMessages const& mesh,
                                        Coordinates const& morphed);
 
@@ -55,7 +55,8 @@ struct Diagnosis {
 Diagnosis diagnose(CaseFile const& case_file, MeshForMessages const& mesh, QualityReport const& quality,
                    Coordinates const& morphed);
 
-/// Why `output` is not written: `what` went wrong, the worst cell, what can be done, likely causes. Lines for Terminal::error.
+/// Why `output` is not written: `what` went wrong, the worst cell, what can be done, likely causes. Lines for
+/// Terminal::error.
 std::string refusal(std::string const& output, std::string const& what, Diagnosis const& diagnosis,
                     std::string const& what_to_do);
 

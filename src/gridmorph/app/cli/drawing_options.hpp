@@ -1,5 +1,5 @@
-// What `view` hands on to the scripts that draw: scripts/picture (meshes of blocks) and scripts/picture-unstructured (of elements). A test
-// holds the list equal to what the scripts take.
+// What `view` hands on to the scripts that draw: scripts/picture (meshes of blocks) and scripts/picture-unstructured
+// (of elements). A test holds the list equal to what the scripts take.
 #pragma once
 
 #include <array>

@@ -61,7 +61,8 @@ Topic const* topic_of(CLI::App const* app) {
   return found == topics.end() ? nullptr : &*found;
 }
 
-/// Where the docs are: beside the installed program, or in the source tree that it was built in; "docs" where they are nowhere.
+/// Where the docs are: beside the installed program, or in the source tree that it was built in; "docs" where they are
+/// nowhere.
 std::string docs_folder() {
   constexpr std::array<std::string_view, 2> names{"share/doc/gridmorph/docs", "docs"};
   return own_folder(names, "case_file.md").value_or("docs").string();

@@ -22,9 +22,9 @@ struct SnippetOptions {
 /// `quality`: the quality table of the mesh, printed before the case file; may be empty.
 std::string inspect_text(MeshSummary const& summary, std::string const& quality, SnippetOptions const& options);
 
-/// A case file to start from: it names every boundary and moves nothing. It runs as it stands on meshes whose problems it can
-/// remedy, and again when one of the motions in it is given numbers: walls that touch move as one, boundaries that moving walls end on
-/// let their nodes slide.
+/// A case file to start from: it names every boundary and moves nothing. It runs as it stands on meshes whose problems
+/// it can remedy, and again when one of the motions in it is given numbers: walls that touch move as one, boundaries
+/// that moving walls end on let their nodes slide.
 std::string case_snippet(MeshSummary const& summary, SnippetOptions const& options = {});
 /// Why there is no such case file: nothing in the mesh could be moved; empty where there is one.
 std::string why_no_case(MeshSummary const& summary);

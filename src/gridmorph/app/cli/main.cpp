@@ -86,8 +86,8 @@ int report_errors(Terminal& terminal, Work const& work) {
   }
 }
 
-/// Libraries throw on threads of their own, where nobody can catch it: Kokkos, when memory runs out while it starts. The status is then what it would
-/// be otherwise, and nothing half-written is left.
+/// Libraries throw on threads of their own, where nobody can catch it: Kokkos, when memory runs out while it starts.
+/// The status is then what it would be otherwise, and nothing half-written is left.
 [[noreturn]] void end_with_status() {
   bool memory = false;
   if (auto const thrown = std::current_exception()) {
@@ -107,8 +107,9 @@ int report_errors(Terminal& terminal, Work const& work) {
   std::_Exit(machine_failure);
 }
 
-/// Memory that was freed is kept and used again. Large arrays come and go from stage to stage; fresh pages, which the system
-/// clears first, cost as much as most stages do (a quarter of the time with 10 million elements, for an eighth more memory).
+/// Memory that was freed is kept and used again. Large arrays come and go from stage to stage; fresh pages, which the
+/// system clears first, cost as much as most stages do (a quarter of the time with 10 million elements, for an eighth
+/// more memory).
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);  // what is mapped on its own goes back to the system at once

@@ -81,8 +81,9 @@ struct MeshSummary {
   std::optional<BlocksSummary> blocks;  ///< only without problems
 };
 
-/// Axis, angle and sectors, or the translation, without names. `fitted`: what matched nodes say, where there are any; it counts
-/// before what the file declares. The dominant component of the direction is positive, so that both sides of a pair have one axis.
+/// Axis, angle and sectors, or the translation, without names. `fitted`: what matched nodes say, where there are any;
+/// it counts before what the file declares. The dominant component of the direction is positive, so that both sides of
+/// a pair have one axis.
 PeriodicSummary describe_periodic(Periodic const& declared, RigidTransform const* fitted, double size);
 
 /// Fills BoundarySummary::touches. nodes[b]: those of boundary b, nodes that coincide by one number less than n_nodes.

@@ -10,8 +10,8 @@
 
 namespace gridmorph::cli {
 
-/// What a report that waits beside its place has to spare for what is known later: more than the digits of three numbers in JSON, and
-/// size and checksum of the output.
+/// What a report that waits beside its place has to spare for what is known later: more than the digits of three
+/// numbers in JSON, and size and checksum of the output.
 inline constexpr std::size_t room_for_a_time = 256;
 
 /// A text file written beside its place; it appears there on commit() and leaves nothing behind without it.
@@ -23,7 +23,8 @@ class PendingFile {
     replace(text);
   }
 
-  /// Puts another text in the place of the first one. A text that is no longer than that needs no more room on the disk.
+  /// Puts another text in the place of the first one. A text that is no longer than that needs no more room on the
+  /// disk.
   void replace(std::string const& text) { file_->write(text); }
   void commit() { file_->commit(); }
 

@@ -1,4 +1,5 @@
-// All files of a run, looked at together before any work: no output may take the place of an input or of another output.
+// All files of a run, looked at together before any work: no output may take the place of an input or of another
+// output.
 #pragma once
 
 #include <gridmorph/app/any_mesh.hpp>
@@ -28,9 +29,10 @@ RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh);
 /// A mesh and, where there is one, the report of the run that writes it.
 RunFiles outputs_of(std::filesystem::path const& output, std::optional<std::filesystem::path> const& report);
 
-/// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an input, another file that has been
-/// read (io::FilesRead) or another output, by whatever name (io::identity_of); or named with the ending of another format than it is written in. An
-/// output mesh counts with all files that it is written to. Cost O(n log n) in the number of files.
+/// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an
+/// input, another file that has been read (io::FilesRead) or another output, by whatever name (io::identity_of); or
+/// named with the ending of another format than it is written in. An output mesh counts with all files that it is
+/// written to. Cost O(n log n) in the number of files.
 void check_run_files(RunFiles const& inputs, RunFiles const& outputs);
 
 }  // namespace gridmorph::cli

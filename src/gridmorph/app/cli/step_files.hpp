@@ -15,8 +15,8 @@ namespace gridmorph::cli {
 /// Whether the output names one file per step.
 bool one_file_per_step(SequenceOptions const& options);
 
-/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}" the
-/// output as it is.
+/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}"
+/// the output as it is.
 std::filesystem::path step_path(SequenceOptions const& options, int step);
 
 /// Puts files of steps, from the first on, in place: all or none. Throws MachineError.
@@ -32,8 +32,8 @@ class StepFiles {
 
   /// Writes the next step beside its place. Fields only with one file per step.
   void add(Coordinates const& morphed, OutputFields const& fields);
-  /// Puts everything in place. Throws MachineError when a file cannot be renamed; those that were put in place before it
-  /// are taken away again.
+  /// Puts everything in place. Throws MachineError when a file cannot be renamed; those that were put in place before
+  /// it are taken away again.
   void commit();
 
  private:

@@ -12,8 +12,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// As a terminal may see it: what could set it (escape sequences, the window's title) or write over lines comes from names in files, and
-/// is shown as '?'.
+/// As a terminal may see it: what could set it (escape sequences, the window's title) or write over lines comes from
+/// names in files, and is shown as '?'.
 std::string harmless(std::string_view text) {
   std::string out(text);
   for (std::size_t n = 0; n < out.size(); ++n) {

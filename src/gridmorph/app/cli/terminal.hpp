@@ -36,8 +36,9 @@ class Terminal {
   void warn(std::string_view text);
   /// "gridmorph: error: ..." to standard error; every line that does not begin with a blank gets the prefix.
   void error(std::string_view text);
-  /// Shows what long work is going on. Where standard error is a terminal: in one line that the next one replaces, with percent and
-  /// time left where the end is known. Otherwise a line when the last one is some time ago. Nothing when quiet.
+  /// Shows what long work is going on. Where standard error is a terminal: in one line that the next one replaces, with
+  /// percent and time left where the end is known. Otherwise a line when the last one is some time ago. Nothing when
+  /// quiet.
   void progress(std::string_view text);
   /// The same, where the caller knows how much of the work of expect() lies behind.
   void progress(std::string_view text, double share);

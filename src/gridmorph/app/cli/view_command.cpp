@@ -113,7 +113,8 @@ std::vector<std::string> drawing_words(CommandLine const& options, std::string c
   // -B: nothing is written beside the scripts, which may be another user's; -u: pictures are named once they are there.
   std::vector<std::string> words{python, "-B", "-u", script.string(), "--out=" + options.output->string()};
   for (auto const& given : options.drawing) {
-    // With a sign of equality what begins with a minus is still a value; of several values argparse sees that they are numbers.
+    // With a sign of equality what begins with a minus is still a value; of several values argparse sees that they are
+    // numbers.
     if (given.values.size() == 1)
       words.push_back(fmt::format("{}={}", given.option->name, given.values[0]));
     else {

@@ -1,5 +1,5 @@
-// The passage of a wheel, as `gridmorph wheel` sees it whatever kind its mesh is: blocks are in wheel_blocks.cpp, elements in
-// wheel_elements.cpp.
+// The passage of a wheel, as `gridmorph wheel` sees it whatever kind its mesh is: blocks are in wheel_blocks.cpp,
+// elements in wheel_elements.cpp.
 #pragma once
 
 #include <gridmorph/app/any_mesh.hpp>
@@ -28,8 +28,8 @@ class PassagePlan {
   [[nodiscard]] virtual std::vector<Trim> trims(std::vector<Vec3> const& boundary) const = 0;
   [[nodiscard]] virtual std::vector<std::string> const& notes() const = 0;
   [[nodiscard]] virtual NearCells near() const = 0;
-  /// Moves the sector from its baseline by what a passage's boundary does, and smooths around cells that came out bad where this kind of
-  /// mesh always does.
+  /// Moves the sector from its baseline by what a passage's boundary does, and smooths around cells that came out bad
+  /// where this kind of mesh always does.
   virtual RelaxReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed) = 0;
   [[nodiscard]] virtual MeshForMessages for_messages() const = 0;
 };

@@ -41,8 +41,8 @@ class WheelRun {
   [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
   [[nodiscard]] nlohmann::json const& retried() const { return retried_.json; }
 
-  /// Plans once for all passages and times, measures the baseline, and tries other recipes where the case file says so. Throws MotionError
-  /// where blades in a wave do not come back after a period.
+  /// Plans once for all passages and times, measures the baseline, and tries other recipes where the case file says so.
+  /// Throws MotionError where blades in a wave do not come back after a period.
   void prepare();
   /// From here on make() keeps the mesh of the worst passage. Cost: a copy of it.
   void keep_worst() { worst_.emplace(); }
@@ -69,7 +69,8 @@ class WheelRun {
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
   void take_worst(int passage, QualityReport const& quality, Coordinates const& morphed);
   [[nodiscard]] std::vector<Seams> new_seams() const;
-  /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of the sector.
+  /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of
+  /// the sector.
   std::map<int, int> place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams, SeamGap& gap);
   void give(std::map<int, int> const& zones, ZoneSink const& sink) const;
   void certify_zones(std::map<int, int> const& zones, Certificate& wheel);

@@ -175,7 +175,8 @@ void Canvas::polygon(std::span<Place const> corners, Colour const& colour) {
 
 namespace {
 
-/// Where a line lies in [0, columns] x [0, rows], as shares of its length, by Liang and Barsky (1984); begin after end: nowhere.
+/// Where a line lies in [0, columns] x [0, rows], as shares of its length, by Liang and Barsky (1984); begin after end:
+/// nowhere.
 std::array<double, 2> shares_inside(double x, double y, double dx, double dy, double columns, double rows) {
   auto const inside = [&](double px, double py) { return px >= 0 && py >= 0 && px < columns && py < rows; };
   std::array<double, 2> t{0, 1};

@@ -44,7 +44,8 @@ class Canvas {
  public:
   Canvas(int width, int height);
 
-  /// A triangle with a share of the scale at each corner, its colours times `light`. Hides what lies behind it. Cost: its samples.
+  /// A triangle with a share of the scale at each corner, its colours times `light`. Hides what lies behind it. Cost:
+  /// its samples.
   void triangle(std::array<Place, 3> const& corner, std::array<double, 3> const& share, ColourScale const& scale,
                 double light);
   /// A convex polygon of one colour over what is there, whatever its depth.

@@ -17,15 +17,17 @@ struct Histogram {
   std::string title;
 };
 
-/// Edges that suit a measure: determinants and angles evenly, aspect ratios evenly on a logarithmic scale up to `largest`.
+/// Edges that suit a measure: determinants and angles evenly, aspect ratios evenly on a logarithmic scale up to
+/// `largest`.
 std::vector<double> histogram_edges(Measure measure, double largest);
 
-/// Values of cells counted, [0] of those that are not `in` and [1] of those that are, with the same edges. Cost O(values).
+/// Values of cells counted, [0] of those that are not `in` and [1] of those that are, with the same edges. Cost
+/// O(values).
 std::array<Histogram, 2> histograms(Measure measure, std::vector<double> const& before,
                                     std::vector<double> const& after, std::vector<char> const& in);
 
-/// An SVG that takes its colours from the page: bars of the baseline behind, those of the morphed mesh as a line. Heights are logarithmic: one bad
-/// cell among a million is to be seen.
+/// An SVG that takes its colours from the page: bars of the baseline behind, those of the morphed mesh as a line.
+/// Heights are logarithmic: one bad cell among a million is to be seen.
 std::string histogram_svg(Histogram const& histogram);
 
 }  // namespace gridmorph::page

@@ -9,8 +9,8 @@
 
 namespace gridmorph::page {
 
-/// Text as it can stand between tags and in quoted attributes: & < > " ' as entities, what is no UTF-8 and what HTML does not allow
-/// (control characters) as U+FFFD.
+/// Text as it can stand between tags and in quoted attributes: & < > " ' as entities, what is no UTF-8 and what HTML
+/// does not allow (control characters) as U+FFFD.
 std::string escaped(std::string_view text);
 
 /// Rows of cells, which are HTML already. Columns of numbers stand to the right.

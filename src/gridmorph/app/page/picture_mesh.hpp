@@ -58,7 +58,8 @@ class PictureMesh {
 
   /// Faces on patches; none of a plane mesh of elements.
   [[nodiscard]] virtual std::vector<Facet> boundary() const = 0;
-  /// The cells of a plane as facets, cell by cell (one of more than four corners as several: `cell` says whose each is), and its sides.
+  /// The cells of a plane as facets, cell by cell (one of more than four corners as several: `cell` says whose each
+  /// is), and its sides.
   struct Plane {
     std::vector<Facet> facets;
     std::vector<Index> cell;

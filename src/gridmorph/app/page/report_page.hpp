@@ -1,7 +1,8 @@
-// One page that says what came of a morph: verdict, what moved, plan, quality, sections, timings, and what it takes to repeat it.
+// One page that says what came of a morph: verdict, what moved, plan, quality, sections, timings, and what it takes to
+// repeat it.
 //
-// The page stands by itself: pictures are in it, it asks for nothing from elsewhere, and a policy in its head keeps it so. Numbers are those of the JSON
-// report, which is a part of what it is made from.
+// The page stands by itself: pictures are in it, it asks for nothing from elsewhere, and a policy in its head keeps it
+// so. Numbers are those of the JSON report, which is a part of what it is made from.
 #pragma once
 
 #include <gridmorph/app/page/cell_picture.hpp>

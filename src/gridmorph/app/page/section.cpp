@@ -79,7 +79,8 @@ Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Co
         a = b;
       }
     }
-    // Each edge bounds two faces of the cell: once, and from its lower node, so that it gives one point in all cells around it.
+    // Each edge bounds two faces of the cell: once, and from its lower node, so that it gives one point in all cells
+    // around it.
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (auto const& [a, b] : edges) points.push_back(crossing(cut, at, level, a, b));

@@ -37,7 +37,8 @@ struct Section {
   std::vector<Wall> walls;  ///< pieces of patches
 };
 
-/// `moves`: per patch, whether it counts as moving; patches that do not count as walls are left out (-1). Cost: one pass over the nodes and cells.
+/// `moves`: per patch, whether it counts as moving; patches that do not count as walls are left out (-1). Cost: one
+/// pass over the nodes and cells.
 Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Coordinates const& at, Cut const& cut,
                  std::vector<signed char> const& walls);
 
@@ -57,7 +58,8 @@ struct FlatBox {
 /// About all walls of a section that move.
 FlatBox moving_walls(Section const& section);
 
-/// Cells coloured by `value` (determinant of each polygon, 1: good), grid lines where they can be told apart, walls. Cost: polygons and pixels.
+/// Cells coloured by `value` (determinant of each polygon, 1: good), grid lines where they can be told apart, walls.
+/// Cost: polygons and pixels.
 io::Picture section_picture(Section const& section, std::vector<float> const& value, Window const& window, int width,
                             int height);
 

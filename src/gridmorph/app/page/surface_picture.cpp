@@ -79,7 +79,8 @@ class SurfaceNumbers {
   std::unordered_map<Index32, Index32> number_;
 };
 
-/// Edges that one facet of moving patches has alone. Zones have nodes of their own where they meet: nodes at one place count as one.
+/// Edges that one facet of moving patches has alone. Zones have nodes of their own where they meet: nodes at one place
+/// count as one.
 std::vector<Edge> rims_of(Surface const& surface, std::vector<signed char> const& role) {
   double size = 0;
   for (Vec3 const& p : surface.baseline) size = std::max(size, norm(p - surface.baseline.front()));

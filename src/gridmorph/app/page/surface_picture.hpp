@@ -35,13 +35,13 @@ struct View {
 /// From above onto a plane.
 View plane_view(Surface const& surface, std::vector<Vec3> const& displacement, int width, int height);
 
-/// Two views onto what moves most, nearly opposite: of directions oblique to the axes those from which most of the moved surface is
-/// seen. `up`: of the picture where it can be. displacement: (nodes) of the surface.
+/// Two views onto what moves most, nearly opposite: of directions oblique to the axes those from which most of the
+/// moved surface is seen. `up`: of the picture where it can be. displacement: (nodes) of the surface.
 std::array<View, 2> find_views(Surface const& surface, std::vector<Vec3> const& displacement, Vec3 const& up, int width,
                                int height);
 
-/// The displaced surface; what turns its back on the viewer is left out, rims of the baseline are blue lines. most: displacement at the end
-/// of the scale. Cost: facets and the pixels they cover.
+/// The displaced surface; what turns its back on the viewer is left out, rims of the baseline are blue lines. most:
+/// displacement at the end of the scale. Cost: facets and the pixels they cover.
 io::Picture surface_picture(Surface const& surface, std::vector<Vec3> const& displacement, double most,
                             View const& view, int width, int height);
 

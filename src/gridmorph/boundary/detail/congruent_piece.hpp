@@ -18,8 +18,9 @@ struct Seed {
 /// Whether one cell laid on another by a turn has all six distances between corners in common with it.
 bool congruent(CellShape const& p, CellShape const& q, Turn turn, double relative);
 
-/// The rigid transform between the largest congruent pieces that hold a pair of seeds, and lie on opposite sides of them; or of
-/// parts of those. `budget` counts down the cells that are looked at; none is left: nothing is found any more.
+/// The rigid transform between the largest congruent pieces that hold a pair of seeds, and lie on opposite sides of
+/// them; or of parts of those. `budget` counts down the cells that are looked at; none is left: nothing is found any
+/// more.
 std::optional<RigidTransform> fit_congruent_piece(SurfaceCells const& cells, Seed const& p, Seed const& q, Turn turn,
                                                   double relative, Index& budget);
 

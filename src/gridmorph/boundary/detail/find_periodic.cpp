@@ -18,8 +18,8 @@ constexpr std::size_t fewest_of_sample = 6;  // of them, for a look at all cells
 constexpr int most_fits = 5;
 constexpr double tidy_direction = 1e-6, tidy_angle = 1e-6;
 
-/// Numbers that a person would have chosen, where the cells allow them: an axis through the origin along x, y or z, a whole
-/// number of sectors.
+/// Numbers that a person would have chosen, where the cells allow them: an axis through the origin along x, y or z, a
+/// whole number of sectors.
 PeriodicMatch tidied(PeriodicMatch const& found, double size) {
   PeriodicMatch out = found;
   double* const d[3] = {&out.direction.x, &out.direction.y, &out.direction.z};

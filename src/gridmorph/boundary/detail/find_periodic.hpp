@@ -17,11 +17,12 @@ struct PeriodicMatch {
   std::vector<CellPair> pairs;
 };
 
-/// Proposes and tries transforms, translations first; the cells of those that match are claimed. At most a few dozen are tried.
+/// Proposes and tries transforms, translations first; the cells of those that match are claimed. At most a few dozen
+/// are tried.
 std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, std::vector<std::string>& notes);
 
-/// The transform as a rotation about an axis; nothing when it is a translation, or moves points along its axis by more than
-/// `tolerance`.
+/// The transform as a rotation about an axis; nothing when it is a translation, or moves points along its axis by more
+/// than `tolerance`.
 std::optional<PeriodicMatch> as_rotation(RigidTransform const& t, double tolerance);
 
 }  // namespace gridmorph::topology

@@ -27,19 +27,20 @@ bool on_opposite_sides(CellShape const& moved, CellShape const& other);
 
 CellShape transformed(CellShape const& shape, RigidTransform const& t);
 
-/// Cells in bins of their own size: a search looks at the cells whose centres are nearby and whose smallest edges are as
-/// long.
+/// Cells in bins of their own size: a search looks at the cells whose centres are nearby and whose smallest edges are
+/// as long.
 class CellBins {
  public:
   /// Takes in the cells that are open now and have an area.
   CellBins(SurfaceCells const& cells, double relative);
 
-  /// The open cell that an open cell lies on under a transform, the nearest where there are several (`hits` of them). Unless
-  /// it is the identity, the two sides of one cell layer are no partners.
+  /// The open cell that an open cell lies on under a transform, the nearest where there are several (`hits` of them).
+  /// Unless it is the identity, the two sides of one cell layer are no partners.
   [[nodiscard]] CellPair partner(Index cell, RigidTransform const& t, bool identity, int& hits) const;
 
-  /// All pairs of open cells under a transform, each cell in one pair at most, ordered by cell. Identity: each pair once, from
-  /// the cell with the lower number. Cells that lie on several others go to the nearest; `ambiguous` counts them.
+  /// All pairs of open cells under a transform, each cell in one pair at most, ordered by cell. Identity: each pair
+  /// once, from the cell with the lower number. Cells that lie on several others go to the nearest; `ambiguous` counts
+  /// them.
   [[nodiscard]] std::vector<CellPair> match(RigidTransform const& t, bool identity, Index& ambiguous) const;
 
  private:

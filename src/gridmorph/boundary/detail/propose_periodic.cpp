@@ -45,7 +45,8 @@ struct Proposal {
   double length = 0;  ///< of the way that points go
 };
 
-/// Two transforms are one when they, or one and the inverse of the other, take the corners of the mesh to the same places.
+/// Two transforms are one when they, or one and the inverse of the other, take the corners of the mesh to the same
+/// places.
 class Proposals {
  public:
   explicit Proposals(Box const& box)
@@ -121,8 +122,8 @@ std::optional<RigidTransform> translation_between(CellShape const& p, CellShape 
   return std::nullopt;
 }
 
-/// Whether laying one cell on the other turns its zone to the other side and moves it into the mesh at the start and out of it at
-/// the end: the sides of a sector do. Cheap, and true for few of many pairs that are alike.
+/// Whether laying one cell on the other turns its zone to the other side and moves it into the mesh at the start and
+/// out of it at the end: the sides of a sector do. Cheap, and true for few of many pairs that are alike.
 bool may_turn(CellShape const& p, CellShape const& q, Turn turn) {
   std::vector<Vec3> const from(p.corner.begin(), p.corner.end());
   std::vector<Vec3> to;

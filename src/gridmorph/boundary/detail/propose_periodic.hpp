@@ -12,8 +12,8 @@ namespace gridmorph::topology {
 /// Corners of the open parts of faces, by their smallest edge; of very many the largest parts', with a note.
 std::vector<Seed> find_seeds(SurfaceCells const& cells, std::vector<std::string>& notes);
 
-/// Translations that lay a seed on another, a few dozen at most: those that most pairs of seeds agree on first. `box` holds the
-/// mesh.
+/// Translations that lay a seed on another, a few dozen at most: those that most pairs of seeds agree on first. `box`
+/// holds the mesh.
 std::vector<RigidTransform> propose_translations(SurfaceCells const& cells, std::vector<Seed> const& seeds,
                                                  Box const& box, double relative);
 

@@ -48,8 +48,9 @@ void BlockPoints::gather(Plan const& plan) {
   });
 }
 
-/// Nodes with a given displacement, but for periodic interfaces inside the flow that follow a blade: these may be anywhere, as long
-/// as copies match. Patches that no surface holds stay as the morph left them, whether a rule moved them or not.
+/// Nodes with a given displacement, but for periodic interfaces inside the flow that follow a blade: these may be
+/// anywhere, as long as copies match. Patches that no surface holds stay as the morph left them, whether a rule moved
+/// them or not.
 void BlockPoints::keep_given(PreparedMorph const& prepared) {
   Plan const& plan = prepared.plan();
   std::vector<std::uint8_t> asked(plan.boundary_nodes.size(), 0), given(plan.boundary_nodes.size(), 0);

@@ -14,7 +14,8 @@
 
 namespace gridmorph::detail {
 
-/// A node of a point; the node's displacement is that of the point, turned by the plan's rotation `matrix` (-1: as it is).
+/// A node of a point; the node's displacement is that of the point, turned by the plan's rotation `matrix` (-1: as it
+/// is).
 struct PointNode {
   Index node;
   std::int32_t matrix;
@@ -121,7 +122,8 @@ class BlockPoints {
   std::vector<std::pair<Index, int>> slips_;  ///< (node, surface), ascending, each once
 };
 
-/// nodes: all those of a point. In the frame of the node with most surfaces; nothing where another node of the point adds one in another frame.
+/// nodes: all those of a point. In the frame of the node with most surfaces; nothing where another node of the point
+/// adds one in another frame.
 std::optional<SlidingPoint> sliding_point(PreparedMorph const& prepared, BlockPoints const& points,
                                           std::vector<PointNode> const& nodes);
 

@@ -12,14 +12,16 @@
 
 namespace gridmorph::detail {
 
-/// A corner of an element with three edges: its node and those at the other ends of the edges. Tetrahedra have one (their F is the same
-/// everywhere), prisms 6, hexahedra 8, pyramids the 4 of the base, polyhedra those where three faces meet.
+/// A corner of an element with three edges: its node and those at the other ends of the edges. Tetrahedra have one
+/// (their F is the same everywhere), prisms 6, hexahedra 8, pyramids the 4 of the base, polyhedra those where three
+/// faces meet.
 struct ElementCorner {
   Index32 element;
   std::array<Index32, 4> node;
 };
 
-/// Free nodes with all corners that change with them; the baseline of these. Built in the order of the nodes; colours are greedy in that order.
+/// Free nodes with all corners that change with them; the baseline of these. Built in the order of the nodes; colours
+/// are greedy in that order.
 class ElementShapes {
  public:
   /// nodes: ascending representatives. copies: pairs (representative, node that coincides with it), ascending.

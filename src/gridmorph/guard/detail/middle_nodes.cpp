@@ -174,7 +174,8 @@ std::vector<Vec3> MiddleNodes::straight(std::vector<Index32> const& rows, Coordi
   return out;
 }
 
-/// Offsets of nodes amid edges from their straight places, and of those amid faces from where their edges put them, between what stays.
+/// Offsets of nodes amid edges from their straight places, and of those amid faces from where their edges put them,
+/// between what stays.
 class MiddleNodes::Interpolation {
  public:
   Interpolation(MiddleNodes const& of, std::vector<Index32> const& region, Coordinates const& x)

@@ -12,19 +12,23 @@
 
 namespace gridmorph::detail {
 
-/// The further nodes of a plan's mesh. Those that a rule gives a displacement, and those with a periodic image, stay; those on slip surfaces stay on these.
+/// The further nodes of a plan's mesh. Those that a rule gives a displacement, and those with a periodic image, stay;
+/// those on slip surfaces stay on these.
 class MiddleNodes {
  public:
   /// signs: numbering_signs(). All that is given must outlive it.
   MiddleNodes(Mesh const& mesh, PreparedUnstructured const& prepared, ElementTables<Kokkos::HostSpace> const& tables,
               std::vector<signed char> const& signs);
 
-  /// An element is broken by its middles when its margin (kernels/curved_margin.hpp) has fallen below `share` of the baseline's, or below the baseline's where that is
-  /// not positive, and the element with the same corners and straight edges is valid. Around those of `suspects`, movable nodes get a place to go to, x*: offsets interpolated
-  /// between those of the nodes that stay, over `rings` of elements, in 2 rings^2 Jacobi sweeps; nodes amid faces and elements where their edges put them, off by as much as opposite faces are; else, where that does not
-  /// do, straight: no offsets. Then nodes of broken elements go an eighth of the way after the other, until none is broken or all went the whole way. What leaves more invalid or, as many, more
-  /// broken ones, or as many with a smaller smallest margin, is taken back. Returns the rows of UnstructuredPlan::middle that moved, ascending.
-  /// Explicit; the same bits for any number of threads. Cost: two margins per suspect, up to 10 for each element around.
+  /// An element is broken by its middles when its margin (kernels/curved_margin.hpp) has fallen below `share` of the
+  /// baseline's, or below the baseline's where that is not positive, and the element with the same corners and straight
+  /// edges is valid. Around those of `suspects`, movable nodes get a place to go to, x*: offsets interpolated between
+  /// those of the nodes that stay, over `rings` of elements, in 2 rings^2 Jacobi sweeps; nodes amid faces and elements
+  /// where their edges put them, off by as much as opposite faces are; else, where that does not do, straight: no
+  /// offsets. Then nodes of broken elements go an eighth of the way after the other, until none is broken or all went
+  /// the whole way. What leaves more invalid or, as many, more broken ones, or as many with a smaller smallest margin,
+  /// is taken back. Returns the rows of UnstructuredPlan::middle that moved, ascending. Explicit; the same bits for any
+  /// number of threads. Cost: two margins per suspect, up to 10 for each element around.
   std::vector<Index> pull(std::vector<Index32> const& suspects, double share, Coordinates& x);
 
  private:

@@ -11,7 +11,8 @@
 
 namespace gridmorph::detail {
 
-/// A corner that changes with a point: the point is the corner's own node (bit 0), the end of its edge d (bit 1 + d), or several.
+/// A corner that changes with a point: the point is the corner's own node (bit 0), the end of its edge d (bit 1 + d),
+/// or several.
 struct PointCorner {
   Index32 cell;  ///< in ShapeRegion::cells
   std::uint8_t corner, roles;
@@ -43,9 +44,9 @@ struct ShapeRegion {
   }
 };
 
-/// `rings` of cells around `cells`, through interfaces. `points`: learns which points stay because edges at them are collapsed, or because
-/// they are twice in a cell through a rotation. Points are in the order of their smallest nodes; colours are greedy in that
-/// order. Cost: O(region) and two numbers per cell and node of the mesh.
+/// `rings` of cells around `cells`, through interfaces. `points`: learns which points stay because edges at them are
+/// collapsed, or because they are twice in a cell through a rotation. Points are in the order of their smallest nodes;
+/// colours are greedy in that order. Cost: O(region) and two numbers per cell and node of the mesh.
 ShapeRegion shape_region(HostInstance const& host, PreparedMorph const& prepared, BlockCells const& mesh_cells,
                          BlockPoints& points, std::span<Index const> cells, int rings);
 

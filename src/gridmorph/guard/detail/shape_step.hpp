@@ -1,4 +1,5 @@
-// The step of one point towards the shapes that its corners have in the baseline; points of blocks and of elements share it.
+// The step of one point towards the shapes that its corners have in the baseline; points of blocks and of elements
+// share it.
 #pragma once
 
 #include <gridmorph/core/csr_graph.hpp>
@@ -10,8 +11,9 @@
 
 namespace gridmorph::detail {
 
-/// How delta follows the sweeps, in eighths of them: 0.1, then 0.6 times as much each, as long as a corner has lost 98 % of its volume, else 0.
-/// `gradual`: growing evenly as that volume falls from 2 % to nothing, so that it does not jump with the motion.
+/// How delta follows the sweeps, in eighths of them: 0.1, then 0.6 times as much each, as long as a corner has lost 98
+/// % of its volume, else 0. `gradual`: growing evenly as that volume falls from 2 % to nothing, so that it does not
+/// jump with the motion.
 class UntanglingSchedule {
  public:
   explicit UntanglingSchedule(int sweeps, bool gradual = false) : sweeps_(sweeps), gradual_(gradual) {}
@@ -36,8 +38,9 @@ class UntanglingSchedule {
   double smoothing_ = 0.1, delta_ = 0;
 };
 
-/// Moves a point at u by `relaxation` times descent_step(), halved up to six times until the sum of f over its corners falls; else not at all.
-/// restrict(sum): leaves the directions that are allowed; allowed(u): the nearest place that is; place(u).
+/// Moves a point at u by `relaxation` times descent_step(), halved up to six times until the sum of f over its corners
+/// falls; else not at all. restrict(sum): leaves the directions that are allowed; allowed(u): the nearest place that
+/// is; place(u).
 template <class Restrict, class Allowed, class Place>
 void make_shape_step(std::vector<kernels::CornerChange> const& corners, Vec3 const& u, double delta, double relaxation,
                      Restrict const& restrict, Allowed const& allowed, Place const& place) {

@@ -122,8 +122,8 @@ class ConnectionReader {
     return donor;
   }
 
-  /// An Abutting1to1 connection between structured zones that is a 1-to-1 interface in other words. False: it is not, and
-  /// stays a patch.
+  /// An Abutting1to1 connection between structured zones that is a 1-to-1 interface in other words. False: it is not,
+  /// and stays a patch.
   bool matched(int z, Node const& node, PointSet const& own, FaceRange const& face_found) {
     auto const& zone = layout_.zones[z];
     int const donor_number = find_donor(layout_, zone, file_.text(node));
@@ -169,7 +169,8 @@ int find_donor(Layout const& layout, ZoneLayout const& zone, std::string const& 
     auto const at = std::find_if(layout.zones.begin(), layout.zones.end(), is_meant);
     return at == layout.zones.end() ? -1 : int(at - layout.zones.begin());
   };
-  // Texts lose the blanks at their end where they are read, names of zones keep them; a zone of the very name goes first.
+  // Texts lose the blanks at their end where they are read, names of zones keep them; a zone of the very name goes
+  // first.
   for (bool const exactly : {true, false}) {
     auto const is_it = [&](std::string const& own) {
       return exactly ? own == name : io::without_blanks_around(own) == io::without_blanks_around(name);

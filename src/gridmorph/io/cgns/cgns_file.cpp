@@ -21,8 +21,8 @@ namespace gridmorph::cgns {
 
 namespace {
 
-/// Node labels whose children matter to a mesh, or are taken out of it. Everything else (solutions, data sets, sections) is not
-/// entered.
+/// Node labels whose children matter to a mesh, or are taken out of it. Everything else (solutions, data sets,
+/// sections) is not entered.
 bool holds_mesh(std::string const& label) {
   static constexpr std::string_view entered[] = {"CGNSBase_t",
                                                  "Zone_t",
@@ -52,7 +52,8 @@ constexpr std::size_t most_linked_nodes = 300'000;
 /// Arrays of Periodic_t may carry units of their own.
 bool is_entered(Node const& node, Node const& above) { return holds_mesh(node.label) || above.label == "Periodic_t"; }
 
-/// The tree that was read last: commands open a mesh several times, and files of thousands of zones take seconds each time.
+/// The tree that was read last: commands open a mesh several times, and files of thousands of zones take seconds each
+/// time.
 struct LastTree {
   struct stat file {};
   Node tree;

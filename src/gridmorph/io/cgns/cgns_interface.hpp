@@ -17,12 +17,12 @@ struct Joined {
   IndexMap to_donor;
 };
 
-/// Joins two vertex ranges through a SIDS Transform: Index2 = T.(Index1 - Begin1) + Begin2. Both ranges are inside their
-/// zones.
+/// Joins two vertex ranges through a SIDS Transform: Index2 = T.(Index1 - Begin1) + Begin2. Both ranges are inside
+/// their zones.
 ///
-/// A zero in Transform is rebuilt: its axis goes to the donor axis nobody else goes to, in the direction that the ranges
-/// run, or for the face normal in the direction that leads out of one zone into the other. The sign for the normal is not
-/// needed to match nodes, and files are seen with either; the map always continues into the donor.
+/// A zero in Transform is rebuilt: its axis goes to the donor axis nobody else goes to, in the direction that the
+/// ranges run, or for the face normal in the direction that leads out of one zone into the other. The sign for the
+/// normal is not needed to match nodes, and files are seen with either; the map always continues into the donor.
 Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor, Corners const& other,
             std::vector<std::int64_t> const& transform);
 

@@ -132,8 +132,9 @@ void find_coordinates(File const& file, ZoneLayout& zone, std::string const& whe
                  list_names(zone.grid->children, "DataArray_t") + ")");
 }
 
-/// Reads n floats as doubles without memory of its own: they come into the upper half of `dest` and are widened from there,
-/// lowest first, block by block. Double m ends where float 2 m + 1 was, and that one has been read by then (m < n).
+/// Reads n floats as doubles without memory of its own: they come into the upper half of `dest` and are widened from
+/// there, lowest first, block by block. Double m ends where float 2 m + 1 was, and that one has been read by then (m <
+/// n).
 void read_widened(File const& file, Node const& array, Index n, double* dest) {
   auto* const bytes = reinterpret_cast<char*>(dest);
   char const* const stored = bytes + std::size_t(n) * sizeof(float);

@@ -11,8 +11,8 @@
 
 namespace gridmorph::cgns {
 
-/// One zone of the file. Index triples are 1-based in the file; a 2-D zone is flat along one axis: one node plane in the
-/// file, two in the mesh.
+/// One zone of the file. Index triples are 1-based in the file; a 2-D zone is flat along one axis: one node plane in
+/// the file, two in the mesh.
 struct ZoneLayout {
   Node const* base = nullptr;
   Node const* node = nullptr;
@@ -49,14 +49,16 @@ struct Layout {
   std::vector<std::string> leave_out;  ///< as it was asked for
 };
 
-/// Finds zones and coordinate arrays in the tree of a file. Adds to problems what makes the file unusable as a structured
-/// mesh: unstructured zones, missing or misfitting coordinate arrays, cylindrical coordinates, ...
-/// `leave_out`: bases and zones to pass over, as is_left_out() takes them; a name that means nothing in the file is a problem.
+/// Finds zones and coordinate arrays in the tree of a file. Adds to problems what makes the file unusable as a
+/// structured mesh: unstructured zones, missing or misfitting coordinate arrays, cylindrical coordinates, ...
+/// `leave_out`: bases and zones to pass over, as is_left_out() takes them; a name that means nothing in the file is a
+/// problem.
 Layout find_zones(File const& file, Node const& tree, Problems& problems,
                   std::vector<std::string> const& leave_out = {});
 
-/// The same for meshes with unstructured zones: those are lines of nodes, extent {nodes, 1, 1}; flat_axis is 2 where the file has no
-/// CoordinateZ. Structured zones among them are as find_zones() has them, but stand in the mesh as in the file, planes too.
+/// The same for meshes with unstructured zones: those are lines of nodes, extent {nodes, 1, 1}; flat_axis is 2 where
+/// the file has no CoordinateZ. Structured zones among them are as find_zones() has them, but stand in the mesh as in
+/// the file, planes too.
 Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems,
                                std::vector<std::string> const& leave_out = {});
 

@@ -41,8 +41,8 @@ bool fills_box(std::vector<Index3> const& points, Corners const& box) {
   return Index(std::set<Index3>(points.begin(), points.end()).size()) == size;
 }
 
-/// The axis that a box of faces is normal to. A box one face wide may fit several axes; then the one whose face it covers
-/// entirely is meant (the usual case in meshes one cell thick), and if that does not decide there is no answer.
+/// The axis that a box of faces is normal to. A box one face wide may fit several axes; then the one whose face it
+/// covers entirely is meant (the usual case in meshes one cell thick), and if that does not decide there is no answer.
 std::optional<int> normal_of_faces(ZoneLayout const& zone, Corners const& faces, Location location) {
   std::vector<int> fitting, covering;
   for (int a = 0; a < 3; ++a) {

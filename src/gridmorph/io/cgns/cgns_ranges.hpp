@@ -41,9 +41,9 @@ struct FaceRange {
   std::string why;  ///< for messages, where misfit is not none
 };
 
-/// Node range of a point set that covers a rectangle of one face of its zone. Face-centred ranges [b:e] become node ranges
-/// [b:e+1]; lists must fill their bounding box. A range that reaches the last node along a face was written as nodes,
-/// whatever its location says, and is taken so.
+/// Node range of a point set that covers a rectangle of one face of its zone. Face-centred ranges [b:e] become node
+/// ranges [b:e+1]; lists must fill their bounding box. A range that reaches the last node along a face was written as
+/// nodes, whatever its location says, and is taken so.
 FaceRange face_range(ZoneLayout const& zone, PointSet const& set);
 
 /// The ascending 0-based node range between corners given as vertices; flat axes get their two planes.

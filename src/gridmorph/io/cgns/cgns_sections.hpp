@@ -37,8 +37,8 @@ struct Section {
   }
 };
 
-/// ElementType_t numbers as they have been since CGNS 3.1. Version 3.0 counted PYRA_13 as 13, before PYRA_14; 3.1 moved it to 21,
-/// behind MIXED, so that the numbers of 2.x hold again.
+/// ElementType_t numbers as they have been since CGNS 3.1. Version 3.0 counted PYRA_13 as 13, before PYRA_14; 3.1 moved
+/// it to 21, behind MIXED, so that the numbers of 2.x hold again.
 class ElementTypes {
  public:
   /// tree: of the whole file, which names the version that wrote it.

@@ -121,8 +121,9 @@ class BoundaryReader {
     return false;
   }
 
-  /// The faces of the section that has the name of the patch, or of its family. Where the patch lists nodes, they must be those of
-  /// the section: all of the patch's, because each node may be listed by one condition only where several meet, or all of the section's.
+  /// The faces of the section that has the name of the patch, or of its family. Where the patch lists nodes, they must
+  /// be those of the section: all of the patch's, because each node may be listed by one condition only where several
+  /// meet, or all of the section's.
   bool take_section(int z, Patch& patch) {
     auto& faces = faces_[std::size_t(z)];
     for (auto const& group : faces.groups) {

@@ -193,8 +193,8 @@ class ConnectionReader {
     return out && range ? nodes_of_points(donor_zone, all_points({(*points)[0], (*points)[1]}), "names donor") : out;
   }
 
-  /// Where the donors of a zone's nodes are looked for that the file does not list: at the faces that it lists, or all round a block.
-  /// Elements may leave out the faces that a block lies behind.
+  /// Where the donors of a zone's nodes are looked for that the file does not list: at the faces that it lists, or all
+  /// round a block. Elements may leave out the faces that a block lies behind.
   std::vector<Index32> possible_donors(int zone, int donor) {
     auto const& there = mesh_.zones[std::size_t(donor)];
     if (there.is_block()) {

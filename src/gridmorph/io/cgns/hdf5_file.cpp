@@ -51,8 +51,8 @@ constexpr int max_depth = 24;
 constexpr int max_rank = 12;
 /// Links that may lead to one node: some files have one grid for a thousand zones. Links to links multiply.
 constexpr int most_links_to_a_node = 4096;
-/// Compressed arrays are longer than the file; deflate makes nothing smaller than 1/1032 (zlib's technical details), and a Cartesian
-/// mesh comes near that.
+/// Compressed arrays are longer than the file; deflate makes nothing smaller than 1/1032 (zlib's technical details),
+/// and a Cartesian mesh comes near that.
 constexpr std::uint64_t most_expansion = 1100, always_allowed = 16u << 20;
 constexpr std::uint64_t external_files_message = std::uint64_t(1) << 7;  // H5O_EFL_ID
 
@@ -211,8 +211,8 @@ class Hdf5File::Walk {
     child.label.clear();
     child.stored->type = "MT";
     Id const target(H5Oopen(object.get(), link_name, H5P_DEFAULT), H5Oclose);
-    // A link to a file that is not there only matters if the mesh needs what it would lead to: such a node stays in the tree
-    // without a label.
+    // A link to a file that is not there only matters if the mesh needs what it would lead to: such a node stays in the
+    // tree without a label.
     if (!target || H5Iget_type(target.get()) != H5I_GROUP) {
       node.children.push_back(std::move(child));
       return;
@@ -285,7 +285,8 @@ class Hdf5File::Walk {
       damaged(node.path, "its data cannot be read");
   }
 
-  /// Whether an array is put together from others. Arrays in one piece, which have an address, are not asked: that takes time.
+  /// Whether an array is put together from others. Arrays in one piece, which have an address, are not asked: that
+  /// takes time.
   static bool is_virtual(hid_t data) {
     if (H5Dget_offset(data) != HADDR_UNDEF) return false;
     Id const how(H5Dget_create_plist(data), H5Pclose);

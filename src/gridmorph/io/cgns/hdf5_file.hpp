@@ -1,7 +1,8 @@
 // CGNS files in HDF5, read with HDF5 itself. Internal to io.
 //
-// The CGNS library copies attributes into buffers of fixed size without looking at their length, follows links that lead back up, and
-// reads every attribute anew on each question. Here all of that is looked at once, before the library opens such a file to write.
+// The CGNS library copies attributes into buffers of fixed size without looking at their length, follows links that
+// lead back up, and reads every attribute anew on each question. Here all of that is looked at once, before the library
+// opens such a file to write.
 #pragma once
 
 #include <gridmorph/io/cgns/cgns_file.hpp>
@@ -19,13 +20,13 @@ class Hdf5File {
   Hdf5File(Hdf5File const&) = delete;
   Hdf5File& operator=(Hdf5File const&) = delete;
 
-  /// The tree below the root, with Node::stored of every node; `entered` says by label and by that of the node above whether a
-  /// node's children are wanted too. Throws IoError for attributes that are no text of CGNS' lengths, links that lead back up,
-  /// groups that are listed twice, data in other files (external storage), and arrays that are far larger than all files
-  /// together. Cost: some 50 microseconds per node; arrays up to Stored::small bytes are read.
+  /// The tree below the root, with Node::stored of every node; `entered` says by label and by that of the node above
+  /// whether a node's children are wanted too. Throws IoError for attributes that are no text of CGNS' lengths, links
+  /// that lead back up, groups that are listed twice, data in other files (external storage), and arrays that are far
+  /// larger than all files together. Cost: some 50 microseconds per node; arrays up to Stored::small bytes are read.
   [[nodiscard]] Node tree(bool (*entered)(Node const& node, Node const& above)) const;
-  /// Looks at every node of a file of CGNS 2, as the library does when it opens one to write; others are checked as far as their tree
-  /// has been read.
+  /// Looks at every node of a file of CGNS 2, as the library does when it opens one to write; others are checked as far
+  /// as their tree has been read.
   void check_for_library() const;
   /// The children of one node, without theirs.
   void load_children(Node& node) const;

@@ -31,8 +31,8 @@ constexpr int gzip_window = 15 + 16;
 /// Text of meshes is packed to a fifteenth at best, damaged or evil files to a thousandth (RFC 1951).
 constexpr std::size_t most_expansion = 100, always_allowed = 16u << 20;
 
-/// Hands all bytes to step(last piece), which is inflate or deflate, and gathers what comes out, up to `most` bytes and a piece. Returns the state
-/// at the end.
+/// Hands all bytes to step(last piece), which is inflate or deflate, and gathers what comes out, up to `most` bytes and
+/// a piece. Returns the state at the end.
 template <class Step>
 int stream_through(z_stream& stream, std::string const& bytes, std::string& out, std::size_t most, Step const& step) {
   constexpr std::size_t largest_piece = std::size_t(1) << 30;
@@ -257,7 +257,8 @@ double FoamFile::number(std::size_t& begin, std::size_t& end) {
 
 Index FoamFile::begin_list(char const* what, Index least_bytes, Index most_alike, char& bracket) {
   std::int64_t const n = integer(what);
-  // Every value takes some bytes, so that a damaged length asks for no more memory than the file is long. The last one of a text ends with the list.
+  // Every value takes some bytes, so that a damaged length asks for no more memory than the file is long. The last one
+  // of a text ends with the list.
   bracket = peek();
   std::size_t const after = at_ + 1, left = text_.size() - std::min(after, text_.size()) + (binary_ ? 0 : 1);
   if (bracket == '{' && n > most_alike)

@@ -1,7 +1,8 @@
-// One file of an OpenFOAM mesh (polyMesh): header, lists, dictionaries; as text or binary, packed by gzip or not. Internal to io.
+// One file of an OpenFOAM mesh (polyMesh): header, lists, dictionaries; as text or binary, packed by gzip or not.
+// Internal to io.
 //
-// Format: OpenFOAM User Guide, "File format" and "Mesh description". Lists stand as N(...), N{value} where all values are alike, in
-// binary files N(bytes); lists of faces in binary files as two lists, places and nodes (faceCompactList).
+// Format: OpenFOAM User Guide, "File format" and "Mesh description". Lists stand as N(...), N{value} where all values
+// are alike, in binary files N(bytes); lists of faces in binary files as two lists, places and nodes (faceCompactList).
 #pragma once
 
 #include <gridmorph/core/csr_graph.hpp>
@@ -43,8 +44,8 @@ struct ZoneEntry {
 
 class FoamFile {
  public:
-  /// Reads a file, or the packed one of that name with ".gz". Throws IoError when neither is there, for a file without the header
-  /// of OpenFOAM, and for one of another class than `classes` names ("labelList", ...).
+  /// Reads a file, or the packed one of that name with ".gz". Throws IoError when neither is there, for a file without
+  /// the header of OpenFOAM, and for one of another class than `classes` names ("labelList", ...).
   FoamFile(std::string const& path, std::vector<std::string_view> const& classes);
 
   [[nodiscard]] std::string const& path() const { return path_; }  ///< with ".gz" where that is what was read
@@ -53,8 +54,8 @@ class FoamFile {
   [[nodiscard]] bool is_binary() const { return binary_; }
   [[nodiscard]] int scalar_bytes() const { return scalar_bytes_; }
 
-  // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary) where it is not what
-  // it has to be.
+  // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary)
+  // where it is not what it has to be.
   /// `most`: how many there can be. Those below `least` are errors.
   std::vector<Index32> labels(Index most, std::int64_t least = -1);
   CsrGraph faces();
@@ -64,7 +65,8 @@ class FoamFile {
   Coordinates coordinates();
   /// Throws MeshError, too, that lists patches which do not have their faces among the n_faces of the mesh.
   std::vector<BoundaryEntry> boundary(Index n_faces);
-  /// Their `key` ("cellLabels", "faceLabels"), each of 0 ... n - 1; other lists are passed over. Throws MeshError for labels that are not.
+  /// Their `key` ("cellLabels", "faceLabels"), each of 0 ... n - 1; other lists are passed over. Throws MeshError for
+  /// labels that are not.
   std::vector<ZoneEntry> zones(std::string_view key, Index n);
 
  private:
@@ -77,7 +79,8 @@ class FoamFile {
   [[nodiscard]] std::string value_of_key();
   std::int64_t integer(char const* what);
   double number(std::size_t& begin, std::size_t& end);
-  /// Length of a list and its opening bracket. `most_alike`: values that may stand as one, N{value}, which takes no room in the file.
+  /// Length of a list and its opening bracket. `most_alike`: values that may stand as one, N{value}, which takes no
+  /// room in the file.
   Index begin_list(char const* what, Index least_bytes, Index most_alike, char& bracket);
   [[nodiscard]] std::int64_t raw_label();
   std::vector<std::int64_t> raw_list(char const* what, Index most_alike);

@@ -227,7 +227,8 @@ class Reader {
     mesh_.patches.push_back(std::move(patch));
   }
 
-  /// The two sides of a mesh one cell thick, which may be one patch: what looks to one side, and what looks to the other.
+  /// The two sides of a mesh one cell thick, which may be one patch: what looks to one side, and what looks to the
+  /// other.
   void add_planes(BoundaryEntry const& entry) {
     Vec3 const way = face_normal(faces_[entry.start], mesh_.coordinates);
     Patch sides[2] = {patch_of(entry, "empty"), patch_of(entry, "empty")};

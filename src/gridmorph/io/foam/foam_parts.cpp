@@ -27,8 +27,8 @@ constexpr double coincident = 1e-6;  // of the mesh size
 bool is_shared(BoundaryEntry const& entry) { return entry["type"] == "processor"; }
 bool is_shared_cyclic(BoundaryEntry const& entry) { return entry["type"] == "processorCyclic"; }
 
-/// What a part knows of the mesh that it was cut from: labels of points and cells from 0 on, of faces from 1 on, negative where they are the other way
-/// round.
+/// What a part knows of the mesh that it was cut from: labels of points and cells from 0 on, of faces from 1 on,
+/// negative where they are the other way round.
 struct Addressing {
   std::vector<Index32> points, cells, faces;
 };
@@ -47,7 +47,8 @@ std::optional<Addressing> addressing_of(Part const& part, Lists const& lists) {
   return Addressing{std::move(*points), std::move(*cells), std::move(*faces)};
 }
 
-/// Nodes of the one side of a face in the order of the other side's, which goes around the other way from the same node.
+/// Nodes of the one side of a face in the order of the other side's, which goes around the other way from the same
+/// node.
 std::vector<Index32> reversed(std::span<Index32 const> nodes, std::size_t start) {
   std::vector<Index32> out;
   for (std::size_t v = 0; v < nodes.size(); ++v) out.push_back(nodes[(start + nodes.size() - v) % nodes.size()]);
@@ -90,7 +91,8 @@ class Joiner {
   }
 
  private:
-  /// A face of the joined mesh. Those inside come first, then patch by patch, those of each in the order of `turn` and of `number`.
+  /// A face of the joined mesh. Those inside come first, then patch by patch, those of each in the order of `turn` and
+  /// of `number`.
   struct Face {
     int patch = -1;
     std::array<int, 2> turn{-1, -1};
@@ -203,7 +205,8 @@ class Joiner {
       for (Index n = 0; n < lists_[p].points.size(); ++n)
         out_.lists.points.set(out_.nodes[p][std::size_t(n)], lists_[p].points[n]);
   }
-  /// Whether what the parts know of the mesh that they were cut from names the same nodes as one, each number once, and all cells.
+  /// Whether what the parts know of the mesh that they were cut from names the same nodes as one, each number once, and
+  /// all cells.
   [[nodiscard]] bool follows_addressing(Index32 n_nodes) const {
     std::vector<Index32> known(std::size_t(n_nodes), -1), joined(std::size_t(n_nodes), -1);
     std::vector<char> cells(std::size_t(first_cell_.back()), 0);

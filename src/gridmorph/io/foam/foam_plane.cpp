@@ -75,7 +75,8 @@ class PlaneFinder {
     return dot(face_normal(lists_.faces[f], lists_.points), up) > 0 ? upper : lower;
   }
 
-  /// Normals of the two planes of a wedge, and how far these are from the origin; the one that looks along an axis first.
+  /// Normals of the two planes of a wedge, and how far these are from the origin; the one that looks along an axis
+  /// first.
   bool measure_planes() {
     auto const plane_of = [&](Index f) { return std::size_t(side_of(f, first_) == upper ? 0 : 1); };
     each_face(lists_.boundary, type_,
@@ -101,7 +102,8 @@ class PlaneFinder {
     return true;
   }
 
-  /// Normals of the planes are n cos a - m sin a and -n cos a - m sin a, n across the plane between them and m away from the axis.
+  /// Normals of the planes are n cos a - m sin a and -n cos a - m sin a, n across the plane between them and m away
+  /// from the axis.
   bool find_wedge() {
     if (!measure_planes()) return no_wedge("one plane of type wedge");
     Vec3 const across = normal_[0] - normal_[1], inwards = normal_[0] + normal_[1];
@@ -198,7 +200,8 @@ class PlaneFinder {
   Planes out_;
 };
 
-/// The patch in which the two planes of a wedge meet: its edges on the axis, by the name of the patch that would have faces there.
+/// The patch in which the two planes of a wedge meet: its edges on the axis, by the name of the patch that would have
+/// faces there.
 void add_axis(Lists const& lists, Planes const& planes, std::vector<Index32> const& number, Mesh& mesh) {
   std::vector<char> is_axis(std::size_t(lists.points.size()), 0);
   for (auto const& [a, b] : planes.pairs) is_axis[std::size_t(a)] = a == b ? 1 : 0;

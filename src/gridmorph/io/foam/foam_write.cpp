@@ -186,7 +186,8 @@ std::vector<fs::path> files_of(std::string const& path) {
   for (Part const& part : parts_of(path))
     for (fs::path const& folder : {part.folders.mesh, part.folders.points}) {
       add_files_in(folder, out);
-      // The case is named by its own folder, too, or by one between: nothing is written into it, whichever of them is the output.
+      // The case is named by its own folder, too, or by one between: nothing is written into it, whichever of them is
+      // the output.
       auto above = fs::absolute(folder).lexically_normal();
       if (above.filename() != "polyMesh") continue;
       out.push_back(above = above.parent_path());

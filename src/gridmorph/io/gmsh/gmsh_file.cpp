@@ -287,7 +287,8 @@ class Parser {
     pieces_of_geometry([](Group&) {});
   }
 
-  /// Pieces of the geometry that fall into parts of the mesh, as if they were whole: a piece of a part is what it is cut from.
+  /// Pieces of the geometry that fall into parts of the mesh, as if they were whole: a piece of a part is what it is
+  /// cut from.
   void parts() {
     text_.begin_raw();
     text_.number64("the number of parts");

@@ -32,7 +32,8 @@ int dimension_of(File const& file) {
   return out;
 }
 
-/// Number in the mesh of each node of the file; -1 for those that no element of its dimension uses (centres of circles, ...).
+/// Number in the mesh of each node of the file; -1 for those that no element of its dimension uses (centres of circles,
+/// ...).
 std::vector<Index32> mesh_nodes(File const& file, int dimension, Index& n_nodes) {
   return io::used_nodes(
       file.nodes, file.tag.size(),

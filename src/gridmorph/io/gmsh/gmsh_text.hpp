@@ -20,7 +20,8 @@ struct Format {
   bool swapped = false;  ///< binary numbers are of the other byte order
 };
 
-/// Reads one after another. Everything throws IoError with the line (text) or the byte (binary files) where it is not what it has to be.
+/// Reads one after another. Everything throws IoError with the line (text) or the byte (binary files) where it is not
+/// what it has to be.
 class Text {
  public:
   /// Reads the whole file and its $MeshFormat.
@@ -31,7 +32,8 @@ class Text {
   [[nodiscard]] std::string const& path() const { return path_; }
   [[nodiscard]] std::size_t at() const { return at_; }
 
-  /// Name of the section that begins next ("Nodes" of $Nodes), what follows it being next; empty at the end of the file.
+  /// Name of the section that begins next ("Nodes" of $Nodes), what follows it being next; empty at the end of the
+  /// file.
   std::string section();
   /// Past $End and the name, which has to be next.
   void end_section(std::string const& name);
@@ -53,7 +55,8 @@ class Text {
   /// Past a number of any value, faster.
   void skip_real(char const* what);
 
-  /// A count of things that take so many bytes each at least, which the rest of the file has to hold. `wide`: a size_t of binary files.
+  /// A count of things that take so many bytes each at least, which the rest of the file has to hold. `wide`: a size_t
+  /// of binary files.
   Index count(char const* what, std::size_t least_bytes, bool wide);
   /// The same as a word.
   Index count_word(char const* what, std::size_t least_bytes) { return checked(integer_word(what), what, least_bytes); }

@@ -50,7 +50,8 @@ std::optional<std::vector<std::int64_t>> integers(Bytes& file, std::uint64_t at,
   return out;
 }
 
-/// Extents of the zones; nothing when a number of nodes is not positive, a zone is a line, or all of them need more than `room` bytes.
+/// Extents of the zones; nothing when a number of nodes is not positive, a zone is a line, or all of them need more
+/// than `room` bytes.
 std::optional<std::vector<ZoneData>> zones_of(std::vector<std::int64_t> const& sizes, int dimensions,
                                               std::uint64_t room) {
   std::vector<ZoneData> out;
@@ -378,8 +379,8 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
     try_binary(file, big_endian, stated, tried);
   }
   std::erase_if(tried, [&](Candidate const& c) { return !stated.allows(c.layout.variant); });
-  // Record markers around a header that makes sense are no accident. Files without markers have nothing but their numbers to be
-  // known by.
+  // Record markers around a header that makes sense are no accident. Files without markers have nothing but their
+  // numbers to be known by.
   auto const has_records = [](Candidate const& c) {
     return c.layout.variant.storage == Storage::unformatted && (c.fits || c.agreement > 1);
   };

@@ -30,13 +30,12 @@ struct Segment {
   std::uint64_t at = 0, count = 0;  ///< bytes of the file
 };
 
-/// One zone: x of all nodes, then y, (z), (iblank); i fastest. What a file holds plane by plane is put into this order by its
-/// segments.
+/// One zone: x of all nodes, then y, (z), (iblank); i fastest. What a file holds plane by plane is put into this order
+/// by its segments.
 struct ZoneData {
-  Index3 extent{1, 1, 1};  ///< as in the file; k 1 in 2-D files
-  std::vector<Segment>
-      segments;  ///< of binary files, in the order of the data: one, or several where a Fortran record had to
-                 ///< be split or a file goes plane by plane
+  Index3 extent{1, 1, 1};         ///< as in the file; k 1 in 2-D files
+  std::vector<Segment> segments;  ///< of binary files, in the order of the data: one, or several where a Fortran record
+                                  ///< had to be split or a file goes plane by plane
 
   [[nodiscard]] Index nodes() const { return Index(extent[0]) * extent[1] * extent[2]; }
 };
@@ -47,12 +46,12 @@ struct FileLayout {
 };
 
 /// Detects the layout of an unformatted or binary file: record markers, counts and sizes must all agree to the byte.
-/// Throws IoError when nothing fits (what came nearest, and where it ends to fit) or several variants do. Reads the headers and the record
-/// markers only, unless several variants fit the size: then the numbers decide.
+/// Throws IoError when nothing fits (what came nearest, and where it ends to fit) or several variants do. Reads the
+/// headers and the record markers only, unless several variants fit the size: then the numbers decide.
 FileLayout detect_binary(std::string const& path, Stated const& stated);
 
-/// Calls visit(file offset, number before it, count) for the pieces of the file that hold bytes [begin, begin + count) of a
-/// zone's data.
+/// Calls visit(file offset, number before it, count) for the pieces of the file that hold bytes [begin, begin + count)
+/// of a zone's data.
 template <class Visit>
 void for_each_piece(ZoneData const& zone, std::uint64_t begin, std::uint64_t count, Visit visit) {
   std::uint64_t start = 0;  // of the segment, in the zone's data
@@ -63,8 +62,9 @@ void for_each_piece(ZoneData const& zone, std::uint64_t begin, std::uint64_t cou
   }
 }
 
-/// Calls visit(place in the file's order, place in the zone's order, count) for runs of coordinates of a zone that lie together in
-/// both, counted in numbers from the zone's first one: x, y, (z) of all nodes, or of one plane k after the other.
+/// Calls visit(place in the file's order, place in the zone's order, count) for runs of coordinates of a zone that lie
+/// together in both, counted in numbers from the zone's first one: x, y, (z) of all nodes, or of one plane k after the
+/// other.
 template <class Visit>
 void for_each_run(ZoneData const& zone, Variant const& variant, Visit visit) {
   Index const per_node = variant.dimensions + (variant.iblank ? 1 : 0);

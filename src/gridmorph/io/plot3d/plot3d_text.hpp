@@ -18,8 +18,9 @@ struct Token {
   std::string_view number;  ///< without it
 };
 
-/// Takes the next number off the front of a text; false at its end. Blanks, line ends and commas separate. Understands D
-/// exponents, exponents without a letter (1.0-101) and repeat counts. Throws IoError, naming the line, on anything else.
+/// Takes the next number off the front of a text; false at its end. Blanks, line ends and commas separate. Understands
+/// D exponents, exponents without a letter (1.0-101) and repeat counts. Throws IoError, naming the line, on anything
+/// else.
 class Scanner {
  public:
   Scanner(std::string_view text, std::string const& path) : text_(text), path_(path) {}
@@ -57,8 +58,9 @@ bool looks_like_numbers(std::string_view head);
 /// Reads a whole formatted file. Throws IoError as detect_binary does. Memory: the text and 8 bytes per number.
 TextLayout read_text(std::string_view text, std::string const& path, Stated const& stated);
 
-/// The text with other coordinates: numbers that are the same keep their text, others are written in the style of the file and,
-/// where there is room, in the columns of those they replace. coordinates[z] are the values of zone z, component after component.
+/// The text with other coordinates: numbers that are the same keep their text, others are written in the style of the
+/// file and, where there is room, in the columns of those they replace. coordinates[z] are the values of zone z,
+/// component after component.
 std::string replace_coordinates(std::string_view text, std::string const& path, TextLayout const& layout,
                                 std::vector<std::vector<double>> const& coordinates);
 

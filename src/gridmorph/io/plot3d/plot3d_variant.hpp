@@ -40,8 +40,8 @@ struct Stated {
   [[nodiscard]] bool allows(Variant const& variant) const;
 };
 
-/// Words as in to_string(), in any order, separated by commas or blanks. Throws IoError on a word that means nothing; `where`
-/// says where they are from.
+/// Words as in to_string(), in any order, separated by commas or blanks. Throws IoError on a word that means nothing;
+/// `where` says where they are from.
 Stated parse_variant(std::string_view words, std::string const& where);
 
 }  // namespace gridmorph::plot3d

@@ -145,8 +145,8 @@ class Builder {
       mesh_.notes.push_back(path_ + ": SU2 files do not say what a marker is; kinds are taken from the names");
   }
 
-  /// SEND_RECEIVE markers: the k-th node of the one that sends to a rank pairs with the k-th of the one that receives from
-  /// it. Those of one PERIODIC_INDEX become a connection.
+  /// SEND_RECEIVE markers: the k-th node of the one that sends to a rank pairs with the k-th of the one that receives
+  /// from it. Those of one PERIODIC_INDEX become a connection.
   void periodic(int z, Problems& problems) {
     auto const& text = zones_[std::size_t(z)];
     std::map<int, Connection> by_transform;

@@ -54,8 +54,8 @@ struct CoordinateText {
 /// Number of nodes of a VTK cell type that SU2 meshes use; 0 for others.
 int vtk_nodes(int vtk_type);
 
-/// Parses a whole file. Throws IoError "file:line: ..." for what is wrong with it. `each_coordinate`, where given, is called
-/// for every coordinate in the order of the file. notes: keywords that were skipped.
+/// Parses a whole file. Throws IoError "file:line: ..." for what is wrong with it. `each_coordinate`, where given, is
+/// called for every coordinate in the order of the file. notes: keywords that were skipped.
 std::vector<ZoneText> parse(std::string const& path, std::string_view text, std::vector<std::string>& notes,
                             std::function<void(CoordinateText const&)> const& each_coordinate = {});
 

@@ -1,7 +1,7 @@
 // Surfaces in and out of files: targets of the rule `target`. What is read and refused: docs/formats.md.
 //
-// Readers throw IoError where a file cannot be opened, is damaged or holds something else, with the place in the file and
-// what was found; they never read beyond what a file declares and holds.
+// Readers throw IoError where a file cannot be opened, is damaged or holds something else, with the place in the file
+// and what was found; they never read beyond what a file declares and holds.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
@@ -20,8 +20,8 @@ TargetGeometry read_stl(std::string const& path);
 /// ASCII STL from text; `source` names it in messages.
 TargetGeometry parse_ascii_stl(std::string_view text, std::string const& source);
 
-/// Surfaces of a CGNS file: structured zones with one node plane become grids, unstructured zones give the triangles and
-/// quadrilaterals of their sections (TRI_*, QUAD_*, MIXED, NGON_n in bases of cell dimension 2; corners only, each
+/// Surfaces of a CGNS file: structured zones with one node plane become grids, unstructured zones give the triangles
+/// and quadrilaterals of their sections (TRI_*, QUAD_*, MIXED, NGON_n in bases of cell dimension 2; corners only, each
 /// quadrilateral as two triangles). Other elements are passed over. Structured volume zones are an error.
 TargetGeometry read_cgns_surface(std::string const& path);
 
@@ -34,8 +34,8 @@ struct SurfaceTriangles {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// The patches' quadrilaterals, each cut into split x split bilinear pieces of two triangles. Normals point into the mesh,
-/// out of the body that it surrounds. Nodes of different patches stay apart.
+/// The patches' quadrilaterals, each cut into split x split bilinear pieces of two triangles. Normals point into the
+/// mesh, out of the body that it surrounds. Nodes of different patches stay apart.
 SurfaceTriangles triangulate(Mesh const& mesh, std::vector<int> const& patches, int split = 1);
 
 enum class StlFormat { binary, ascii };

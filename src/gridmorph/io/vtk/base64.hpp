@@ -10,8 +10,8 @@ namespace gridmorph::vtk {
 
 std::string to_base64(std::string_view bytes);
 
-/// Reads bytes out of a text, four characters at a time; blanks are passed over. A group that ends in '=' ends a piece, and another may follow:
-/// heads of arrays are written apart or not.
+/// Reads bytes out of a text, four characters at a time; blanks are passed over. A group that ends in '=' ends a piece,
+/// and another may follow: heads of arrays are written apart or not.
 class Base64Reader {
  public:
   /// From byte `at` of a text on.

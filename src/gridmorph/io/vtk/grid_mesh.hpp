@@ -29,8 +29,8 @@ struct FieldPrefixes {
 };
 FieldPrefixes field_prefixes(std::span<Grid const* const> grids, OutputFields const& fields);
 
-/// What gives a grid other points, and fields. `before` and `after`: its coordinates, and fields, in the order of the file. Throws IoError where
-/// `n_elements` and the coordinates are not those of the grid.
+/// What gives a grid other points, and fields. `before` and `after`: its coordinates, and fields, in the order of the
+/// file. Throws IoError where `n_elements` and the coordinates are not those of the grid.
 void morph_grid(XmlFile const& file, Grid const& grid, int dimension, Index n_elements, Coordinates const& before,
                 Coordinates const& after, OutputFields const& fields, FieldPrefixes const& prefixes,
                 std::vector<Edit>& edits);

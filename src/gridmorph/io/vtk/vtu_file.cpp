@@ -10,7 +10,8 @@ namespace gridmorph::vtk {
 
 namespace {
 
-/// Cell arrays that number boundaries: of VTK and its users, Gmsh, pygmsh and meshio, SU2, MEDIT, FEniCS, OpenFOAM, STAR-CCM+.
+/// Cell arrays that number boundaries: of VTK and its users, Gmsh, pygmsh and meshio, SU2, MEDIT, FEniCS, OpenFOAM,
+/// STAR-CCM+.
 constexpr std::array<std::string_view, 16> marker_arrays{
     "CellEntityIds", "gmsh:physical", "cell_tags",  "BoundaryId",      "BoundaryIds", "boundary_id",
     "Marker",        "marker",        "MarkerTag",  "medit:ref",       "PatchId",     "patchID",

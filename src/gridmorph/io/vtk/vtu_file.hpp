@@ -22,14 +22,14 @@ struct Grid {
   std::vector<double> coordinates;  ///< three each
   std::vector<std::uint8_t> type;   ///< VTK's number
   CsrGraph nodes;
-  /// Of polyhedra: number of faces, then for each the number of its nodes and these. faces_end: behind the last number of each cell, -1 of
-  /// cells that are none.
+  /// Of polyhedra: number of faces, then for each the number of its nodes and these. faces_end: behind the last number
+  /// of each cell, -1 of cells that are none.
   std::vector<std::int64_t> faces, faces_end;
 };
 
-/// All of a file, in its order. Polyhedra are read in the layout of VTK before 9.4 ("faces", "faceoffsets") and in that since ("face_connectivity",
-/// "face_offsets", "polyhedron_to_faces", "polyhedron_offsets"). Throws IoError and MeshError for numbers that do not fit one another, and for pieces with
-/// ghost cells.
+/// All of a file, in its order. Polyhedra are read in the layout of VTK before 9.4 ("faces", "faceoffsets") and in that
+/// since ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets"). Throws IoError and
+/// MeshError for numbers that do not fit one another, and for pieces with ghost cells.
 std::vector<Grid> read_grids(XmlFile const& file);
 /// The only one. Throws IoError where there are none, or several.
 Grid read_grid(XmlFile const& file);
@@ -39,7 +39,8 @@ int dimension_of(Grid const& grid);
 /// Of one cell: 0 to 3; -1 where its type is not read.
 int dimension_of_cell(std::uint8_t type);
 
-/// Cell array by which 2-D cells are put into patches, and names of these where the file has them: number k is the k-th name.
+/// Cell array by which 2-D cells are put into patches, and names of these where the file has them: number k is the k-th
+/// name.
 struct Markers {
   std::string array;
   std::vector<std::int64_t> of_cell;

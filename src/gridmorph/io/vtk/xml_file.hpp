@@ -1,7 +1,8 @@
 // A file of VTK's XML formats: its tags, and the arrays of numbers between or behind them. Internal to io.
 //
-// Format: "VTK File Formats" (docs.vtk.org), XML: DataArray as text (ascii), base64 (binary) or behind all tags (appended, raw or base64),
-// binary ones with the number of their bytes before them and whole or in blocks packed by zlib.
+// Format: "VTK File Formats" (docs.vtk.org), XML: DataArray as text (ascii), base64 (binary) or behind all tags
+// (appended, raw or base64), binary ones with the number of their bytes before them and whole or in blocks packed by
+// zlib.
 #pragma once
 
 #include <gridmorph/core/index.hpp>
@@ -43,8 +44,8 @@ class XmlFile {
   /// A whole number that an attribute gives.
   [[nodiscard]] Index count(Tag const& tag, char const* attribute) const;
 
-  /// What makes an array hold other values, in the way and precision it has; nothing where none changes. Of text the numbers that change alone, of
-  /// packed arrays all.
+  /// What makes an array hold other values, in the way and precision it has; nothing where none changes. Of text the
+  /// numbers that change alone, of packed arrays all.
   void replace(Tag const& array, std::span<double const> values, std::vector<Edit>& edits) const;
   /// A new array, stored as `like` is if that is text, else base64 and packed as the file is.
   [[nodiscard]] std::string array_text(std::string const& name, int components, std::span<double const> values,

@@ -1,7 +1,7 @@
 // The tags of an XML file with their places in it. Internal to io.
 //
-// Not a library's: files are copied with a few places changed, so that places are what is wanted of them, and VTK's files are no XML where raw
-// bytes follow the tags (AppendedData), which parsers of XML refuse.
+// Not a library's: files are copied with a few places changed, so that places are what is wanted of them, and VTK's
+// files are no XML where raw bytes follow the tags (AppendedData), which parsers of XML refuse.
 #pragma once
 
 #include <cstddef>

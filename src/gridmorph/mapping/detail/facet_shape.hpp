@@ -7,8 +7,8 @@
 
 namespace gridmorph::mapping {
 
-/// A point of an element. Triangles: x = x0 + a (x1 - x0) + b (x2 - x0), a, b >= 0, a + b <= 1. Quadrilaterals: bilinear in
-/// 0 <= a, b <= 1 from corner 0 along the side to corner 1 (a) and to corner 3 (b).
+/// A point of an element. Triangles: x = x0 + a (x1 - x0) + b (x2 - x0), a, b >= 0, a + b <= 1. Quadrilaterals:
+/// bilinear in 0 <= a, b <= 1 from corner 0 along the side to corner 1 (a) and to corner 3 (b).
 struct FacetPoint {
   double a = 0, b = 0;
   Vec3 position;

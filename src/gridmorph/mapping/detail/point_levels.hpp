@@ -27,8 +27,8 @@ struct Points {
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::size_t>;
 
-/// The points, or one point per cell of a grid: neighbours on surface meshes that are stretched a hundredfold all lie on
-/// one grid line, and a thinned level finds the next lines without walking along this one.
+/// The points, or one point per cell of a grid: neighbours on surface meshes that are stretched a hundredfold all lie
+/// on one grid line, and a thinned level finds the next lines without walking along this one.
 struct Level {
   std::vector<std::size_t> number;  ///< in the cloud
   std::vector<Vec3> position;

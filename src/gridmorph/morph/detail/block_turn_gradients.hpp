@@ -1,4 +1,5 @@
-// The rotations of a plan of blocks in reverse: gradients of the ends of chains stage by stage, then of the walls' nodes.
+// The rotations of a plan of blocks in reverse: gradients of the ends of chains stage by stage, then of the walls'
+// nodes.
 #pragma once
 
 #include <gridmorph/kernels/transposed_copies.hpp>

@@ -1,4 +1,5 @@
-// The rotations of a plan of blocks through one morph: of the walls' nodes first, then stage by stage of the ends of chains.
+// The rotations of a plan of blocks through one morph: of the walls' nodes first, then stage by stage of the ends of
+// chains.
 #pragma once
 
 #include <gridmorph/morph/device_plan.hpp>

@@ -26,7 +26,8 @@ struct LineGroups {
   std::vector<kernels::LineGroup> groups;
   std::vector<kernels::LineBundle> bundles;
 };
-/// Bundles cut so that two of them have the same lines or none in common, and put together by their lines. Cost: linear in bundles, but for sorts.
+/// Bundles cut so that two of them have the same lines or none in common, and put together by their lines. Cost: linear
+/// in bundles, but for sorts.
 LineGroups groups_of(BundlesOfChains const& of_chains);
 
 }  // namespace gridmorph::detail

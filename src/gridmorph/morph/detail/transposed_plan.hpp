@@ -1,5 +1,5 @@
-// What the transpose of a morph of blocks needs besides the tables of its DevicePlan: who reads what, turned round, and room for the
-// gradients that a field of its workspace has no place for.
+// What the transpose of a morph of blocks needs besides the tables of its DevicePlan: who reads what, turned round, and
+// room for the gradients that a field of its workspace has no place for.
 #pragma once
 
 #include <gridmorph/kernels/transposed_copies.hpp>
@@ -46,7 +46,8 @@ struct TransposedTurns {
   kernels::Dependents<Memory> end_walls_of_slot, end_walls_of_root;
 };
 
-/// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per bundle of lines. The plan has room for two fields.
+/// Memory: about 50 bytes per node of the skeleton, and 100 to 200 bytes per bundle of lines. The plan has room for two
+/// fields.
 template <class Exec>
 struct TransposedPlan {
   using Memory = typename Exec::memory_space;

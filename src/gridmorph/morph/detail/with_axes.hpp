@@ -7,7 +7,8 @@
 
 namespace gridmorph::detail {
 
-/// The caller's vectors with their components axes[0], axes[1] and axes[2] as x, y and z; of one list: ConfigError for zones apart.
+/// The caller's vectors with their components axes[0], axes[1] and axes[2] as x, y and z; of one list: ConfigError for
+/// zones apart.
 template <class Memory, bool ReadOnly>
 BasicVectorView<Memory, ReadOnly> with_axes(BasicVectorView<Memory, ReadOnly> const& v,
                                             std::array<int, 3> const& axes) {

@@ -72,8 +72,8 @@ struct CommonPartOfBlocks {
   }
   void keep(Exec const& exec, StageField<Exec> const& f) const { get(exec, slots, f.skeleton, before); }
 
-  /// Gradients of slots and of nodes inside pieces, before motions are added; nodes: displacements of the latter there. What boundary nodes get at once
-  /// waits in of_given.
+  /// Gradients of slots and of nodes inside pieces, before motions are added; nodes: displacements of the latter there.
+  /// What boundary nodes get at once waits in of_given.
   void add_back(Exec const& exec, StageField<Exec> const& f, StageField<Exec> const& g, Vec3 const* nodes) const {
     clear<Vec3>(exec, of_given);
     get(exec, exact_slots, g.skeleton, exact_values);
@@ -207,8 +207,8 @@ struct BlockCommon {
   std::vector<CommonPartOfBlocks<Exec>> parts;
   Kokkos::View<kernels::CommonFrame*, Memory> frames;
   List<Exec, kernels::CommonMove> moves;  ///< part after part, of all fields and of gradients
-  List<Exec, Vec3>
-      before;  ///< where rates and transposes are taken at: displacements of nodes inside pieces before what is in common is added
+  List<Exec, Vec3> before;  ///< where rates and transposes are taken at: displacements of nodes inside pieces before
+                            ///< what is in common is added
   int n_fields;
 
   BlockCommon(Exec const& exec, Plan const& plan, int fields, bool transposes, bool keeps)

@@ -1,5 +1,6 @@
-// Bodies that turn and shift, in an unstructured morph: after the walls what each does as a whole is taken off what they and their columns do, so that
-// all stages up to the far field carry what is left (bending, say); then every node gets its share of the turns and shifts.
+// Bodies that turn and shift, in an unstructured morph: after the walls what each does as a whole is taken off what
+// they and their columns do, so that all stages up to the far field carry what is left (bending, say); then every node
+// gets its share of the turns and shifts.
 #pragma once
 
 #include <gridmorph/kernels/body_turn.hpp>

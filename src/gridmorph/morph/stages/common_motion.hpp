@@ -1,4 +1,5 @@
-// The motion that a part of a mesh has in common (kernels/common_motion.hpp): tables, and what both kinds of mesh do with them.
+// The motion that a part of a mesh has in common (kernels/common_motion.hpp): tables, and what both kinds of mesh do
+// with them.
 #pragma once
 
 #include <gridmorph/kernels/common_motion.hpp>
@@ -25,7 +26,8 @@ struct CommonMotionTables {
   List<Exec, kernels::CommonMove> move;  ///< of each field, and of gradients
   bool pulls;                            ///< whether what is left is seen from the moved mesh
 
-  /// n_chunks: of nodes that gradients are summed over, where the transpose is asked for. moves: room for `move`; none: it is made.
+  /// n_chunks: of nodes that gradients are summed over, where the transpose is asked for. moves: room for `move`; none:
+  /// it is made.
   CommonMotionTables(Exec const& exec, CommonMotion const& plan, int n_fields, Index n_chunks, bool pull,
                      List<Exec, kernels::CommonMove> const& moves = {})
       : frame(plan.frame),
@@ -73,8 +75,8 @@ struct CommonMotionTables {
     kernels::launch("gridmorph::common::add_rate", exec, 0, n, kernels::AddCommonRate{frame, x, of(f), of(r), u, v});
   }
 
-  /// Gradients g at nodes, before motions are added at f: their moments to the chunks from `chunk` on, then g as what they hand to u. u: displacements
-  /// before, null where nothing is seen from elsewhere.
+  /// Gradients g at nodes, before motions are added at f: their moments to the chunks from `chunk` on, then g as what
+  /// they hand to u. u: displacements before, null where nothing is seen from elsewhere.
   void nodes_back(Exec const& exec, List<Exec, Vec3> const& x, Vec3 const* u, int f, Index chunk,
                   List<Exec, Vec3> const& g) const {
     kernels::launch("gridmorph::transposed::common::nodes", exec,
@@ -82,8 +84,8 @@ struct CommonMotionTables {
     kernels::launch("gridmorph::transposed::common::pull", exec, 0, Index(g.extent(0)),
                     kernels::PullCommonGradient<false>{of(f), g.data()});
   }
-  /// Last: what the rest hands back becomes what it hands to the displacement that is given, and `to` has added what the fit hands there. n_chunks: of
-  /// all that came before.
+  /// Last: what the rest hands back becomes what it hands to the displacement that is given, and `to` has added what
+  /// the fit hands there. n_chunks: of all that came before.
   void fit_back(Exec const& exec, Index n_chunks, Vec3 const* rest, int f, int of_gradients,
                 List<Exec, Vec3> const& of_rest, List<Exec, Vec3> const& to) const {
     kernels::launch("gridmorph::transposed::common::pull", exec, 0, Index(of_rest.extent(0)),

@@ -20,7 +20,8 @@ class FrozenShifts {
   using Out = VectorView<typename Exec::memory_space>;
   static inline std::string const region = "gridmorph::FrozenShifts";
 
-  /// n_boundary, n_nodes: of the plan. rotations: Plan::rotations, none for elements. Throws ConfigError where the map is another plan's.
+  /// n_boundary, n_nodes: of the plan. rotations: Plan::rotations, none for elements. Throws ConfigError where the map
+  /// is another plan's.
   FrozenShifts(Exec const& exec, SmoothingMap const& map, Index n_boundary, Index n_nodes,
                Kokkos::View<Mat3*, typename Exec::memory_space> const& rotations, bool back)
       : n_modes_(map.n_modes),

@@ -1,5 +1,5 @@
-// Nodes of elements that move as one, held on the surfaces of all of them; and displacements that rules give, put back on slip surfaces before any
-// stage reads them.
+// Nodes of elements that move as one, held on the surfaces of all of them; and displacements that rules give, put back
+// on slip surfaces before any stage reads them.
 #pragma once
 
 #include <gridmorph/geometry/slip_surface.hpp>

@@ -1,4 +1,5 @@
-// A mesh of elements in parts, each with stages of its own in its own numbers, and the motion that its boundaries have in common taken off before them.
+// A mesh of elements in parts, each with stages of its own in its own numbers, and the motion that its boundaries have
+// in common taken off before them.
 #pragma once
 
 #include <gridmorph/kernels/part_nodes.hpp>

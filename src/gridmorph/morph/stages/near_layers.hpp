@@ -1,4 +1,5 @@
-// Second stage of an unstructured morph, by layers: what walls and the ends of their columns do, turns included, passed on node by node.
+// Second stage of an unstructured morph, by layers: what walls and the ends of their columns do, turns included, passed
+// on node by node.
 #pragma once
 
 #include <gridmorph/kernels/layer_motion.hpp>

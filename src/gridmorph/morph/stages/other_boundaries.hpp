@@ -1,4 +1,5 @@
-// Fourth stage of an unstructured morph: boundaries that do not drive it get what they ask for, and the difference spreads.
+// Fourth stage of an unstructured morph: boundaries that do not drive it get what they ask for, and the difference
+// spreads.
 #pragma once
 
 #include <gridmorph/geometry/slip_surface.hpp>
@@ -129,8 +130,8 @@ class OtherBoundaries {
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
 
-  /// Where nodes that slide or have images begin, left in StageField::work: the field so far, and the residual of the nodes whose
-  /// displacement is given.
+  /// Where nodes that slide or have images begin, left in StageField::work: the field so far, and the residual of the
+  /// nodes whose displacement is given.
   class Start {
    public:
     Start(Exec const& exec, UnstructuredPlan::Start const& plan, Index n_nodes, std::vector<Vec3> const* back)

@@ -44,7 +44,8 @@ class OnSkeleton {
                                  plan().turns.of_skeleton(f.number, f.of));
   }
 
-  /// Where the transposes of sweeps and of the volume read gradients: of displacements before what is in common is added, or after it.
+  /// Where the transposes of sweeps and of the volume read gradients: of displacements before what is in common is
+  /// added, or after it.
   [[nodiscard]] kernels::BundleGradients<Memory> gradients(detail::TransposedLines<Exec> const& lines,
                                                            StageField<Exec> const& f, StageField<Exec> const& g,
                                                            bool before_common) const {
@@ -95,7 +96,8 @@ class OnSkeleton {
   BlockTables<Exec> tables_;
 };
 
-/// First: the boundary's displacement, less what parts have in common, goes to its slots, and how walls turn is taken from it. Linear where none does.
+/// First: the boundary's displacement, less what parts have in common, goes to its slots, and how walls turn is taken
+/// from it. Linear where none does.
 template <class Exec>
 class BoundaryValues : OnSkeleton<Exec> {
  public:
@@ -224,7 +226,8 @@ class LineSweep : OnSkeleton<Exec> {
   std::size_t number_;
 };
 
-/// What parts have in common, added to the skeleton: slip surfaces see the whole, the pass through the volume adds it elsewhere.
+/// What parts have in common, added to the skeleton: slip surfaces see the whole, the pass through the volume adds it
+/// elsewhere.
 template <class Exec>
 class AddCommon : OnSkeleton<Exec> {
  public:

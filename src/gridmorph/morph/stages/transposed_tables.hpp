@@ -42,8 +42,8 @@ struct TransposedEntries {
   }
 };
 
-/// In the memory of an execution space, sorted by counting. order: of each source, those with the greatest gather first, a launch each; all at
-/// once where it is empty. Fences.
+/// In the memory of an execution space, sorted by counting. order: of each source, those with the greatest gather
+/// first, a launch each; all at once where it is empty. Fences.
 template <class Exec>
 kernels::TransposedLayers<typename Exec::memory_space> upload(Exec const& exec, TransposedEntries const& of,
                                                               std::vector<int> const& order, std::string const& label) {
@@ -103,7 +103,8 @@ kernels::TransposedLayers<typename Exec::memory_space> transposed(Exec const& ex
   return upload(exec, entries, layer, label);
 }
 
-/// from[k] -> to[k], or k itself where there is no `to`: of copies, and of listed values of slots. Negative ones are left out.
+/// from[k] -> to[k], or k itself where there is no `to`: of copies, and of listed values of slots. Negative ones are
+/// left out.
 template <class Exec>
 kernels::TransposedRows<typename Exec::memory_space> transposed(Exec const& exec, std::vector<Index32> const& from,
                                                                 std::vector<Index32> const* to,

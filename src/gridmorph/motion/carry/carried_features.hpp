@@ -14,18 +14,20 @@
 
 namespace gridmorph {
 
-/// What CarryRule says. Faces of its patches that share nodes are one feature; its rim are the nodes that it has in common with the walls. It
-/// moves rigidly,
+/// What CarryRule says. Faces of its patches that share nodes are one feature; its rim are the nodes that it has in
+/// common with the walls. It moves rigidly,
 ///
-///     x' = t + R (x - s),   s = sum a_k x_k / sum a_k,   t = sum a_k y_k / sum a_k,   R: sum a_k |R (x_k - s) - (y_k - t)|^2 least,
+///     x' = t + R (x - s),   s = sum a_k x_k / sum a_k,   t = sum a_k y_k / sum a_k,   R: sum a_k |R (x_k - s) - (y_k -
+///     t)|^2 least,
 ///
-/// x_k the corners of the walls' faces that touch the rim, y_k where the walls' rules put them, a_k what they have of the area of these faces (length in
-/// plane meshes): R as Horn (JOSA A 4, 1987) has it. A constraint keeps what lies along a direction d (the axis, the normal of flat
-/// patches): t loses its part along d, and R turns about d by
+/// x_k the corners of the walls' faces that touch the rim, y_k where the walls' rules put them, a_k what they have of
+/// the area of these faces (length in plane meshes): R as Horn (JOSA A 4, 1987) has it. A constraint keeps what lies
+/// along a direction d (the axis, the normal of flat patches): t loses its part along d, and R turns about d by
 ///
 ///     atan2(sum a_k d . (b_k x c_k), sum a_k (b_k . c_k - (b_k . d)(c_k . d))),   b_k = x_k - s,   c_k = y_k - t.
 ///
-/// A rigid motion of the walls is taken over to rounding, no motion exactly. R makes it no linear function of the walls' displacement.
+/// A rigid motion of the walls is taken over to rounding, no motion exactly. R makes it no linear function of the
+/// walls' displacement.
 class CarriedFeatures {
  public:
   using Displacement = WallFaces::Displacement;
@@ -35,8 +37,9 @@ class CarriedFeatures {
     double fade = 0;  ///< how far from the rim the walls have their own motion again [length]
   };
 
-  /// `displacement`: that the rules of the walls give their nodes. Throws MotionError, beginning with `name`, for a feature that meets none of the walls or walls of
-  /// different motion, and for a plane that there is not. Cost O(n log n) in the nodes of features and walls.
+  /// `displacement`: that the rules of the walls give their nodes. Throws MotionError, beginning with `name`, for a
+  /// feature that meets none of the walls or walls of different motion, and for a plane that there is not. Cost O(n log
+  /// n) in the nodes of features and walls.
   CarriedFeatures(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& patches,
                   CarryRule const& rule, std::vector<int> const& walls, Displacement const& displacement,
                   std::string const& name);

@@ -13,13 +13,14 @@ namespace gridmorph {
 ///
 ///     u(p) = u_w(p) + (1 - c1(d / D)) (u_f(p) - u_w(p)),   c1(t) = t^2 (3 - 2 t),
 ///
-/// u_w what the rule of the wall says, u_f the rigid motion of the nearest feature, d the distance of p from its rim along the edges of the wall. D is
-/// CarryRule::fade, half the way to the next feature at most, and no farther than the nearest node that patches with another displacement
-/// of their own have too, or a periodic copy on the wall. Beyond D the wall keeps its displacement to the bit.
+/// u_w what the rule of the wall says, u_f the rigid motion of the nearest feature, d the distance of p from its rim
+/// along the edges of the wall. D is CarryRule::fade, half the way to the next feature at most, and no farther than the
+/// nearest node that patches with another displacement of their own have too, or a periodic copy on the wall. Beyond D
+/// the wall keeps its displacement to the bit.
 class CarryingWall {
  public:
-  /// `patches`: the walls, of one rule or of several; `own`: their displacement. `limits`: per patch of the mesh, whether it has a displacement
-  /// of its own that the nodes share which the walls have on it. Cost O(n log n).
+  /// `patches`: the walls, of one rule or of several; `own`: their displacement. `limits`: per patch of the mesh,
+  /// whether it has a displacement of its own that the nodes share which the walls have on it. Cost O(n log n).
   CarryingWall(Boundary const& boundary, std::vector<int> const& patches,
                std::vector<CarriedFeatures::Feature const*> const& features, std::vector<char> const& limits,
                CarriedFeatures::Displacement const& own);

@@ -11,7 +11,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Cosine of the angle between neighbouring faces up to which they are of one piece: facets of curved surfaces have less, creases between planes more.
+/// Cosine of the angle between neighbouring faces up to which they are of one piece: facets of curved surfaces have
+/// less, creases between planes more.
 constexpr double same_plane = 0.866;  // 30 degrees
 
 /// Unit, zero of a collapsed face; of a line across the plane of the mesh and the line.

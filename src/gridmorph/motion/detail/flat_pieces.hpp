@@ -7,9 +7,10 @@
 
 namespace gridmorph {
 
-/// Nodes of a patch of elements, ascending, by pieces: faces (lines, in a plane mesh) that share an edge (a node) belong together where they are within
-/// 30 degrees of one another; whether a piece is a plane is the caller's to see. Nodes where pieces meet are in each of them. Pieces in the order of their first faces; none of patches of blocks, whose faces are grids.
-/// Cost O(faces log faces).
+/// Nodes of a patch of elements, ascending, by pieces: faces (lines, in a plane mesh) that share an edge (a node)
+/// belong together where they are within 30 degrees of one another; whether a piece is a plane is the caller's to see.
+/// Nodes where pieces meet are in each of them. Pieces in the order of their first faces; none of patches of blocks,
+/// whose faces are grids. Cost O(faces log faces).
 std::vector<std::vector<Index>> flat_pieces(Boundary const& boundary, int patch);
 
 }  // namespace gridmorph

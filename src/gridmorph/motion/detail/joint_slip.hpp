@@ -1,5 +1,5 @@
-// Nodes behind periodic boundaries move as one: together they are held on the surfaces of all of them, and where periodic sides meet
-// in their axis, on that. Internal to motion.
+// Nodes behind periodic boundaries move as one: together they are held on the surfaces of all of them, and where
+// periodic sides meet in their axis, on that. Internal to motion.
 #pragma once
 
 #include <gridmorph/motion/boundary_conditions.hpp>
@@ -44,7 +44,8 @@ struct ClassMember {
 /// Finds what classes are held on.
 class JointSlipFinder {
  public:
-  /// rotations: of the connections; what is a small share of their angles is how far fits of several differ, and turns nothing. surfaces_of: numbers in `surfaces` of those that a node lies on; size: of the mesh.
+  /// rotations: of the connections; what is a small share of their angles is how far fits of several differ, and turns
+  /// nothing. surfaces_of: numbers in `surfaces` of those that a node lies on; size: of the mesh.
   JointSlipFinder(Coordinates const& x, std::vector<SlipSurface> const& surfaces, double size,
                   std::function<std::span<Index32 const>(Index32 node)> surfaces_of, RotationNumbers& rotations)
       : x_(x),
@@ -54,8 +55,9 @@ class JointSlipFinder {
         surfaces_of_(std::move(surfaces_of)),
         rotations_(rotations) {}
 
-  /// Adds an entry for member k of a class to `to`, unless nothing holds it. around: rotations that ways around periodic sides lead back to
-  /// the first member by; what moves has to be the same after them: it goes along their axis, or stays where there are several.
+  /// Adds an entry for member k of a class to `to`, unless nothing holds it. around: rotations that ways around
+  /// periodic sides lead back to the first member by; what moves has to be the same after them: it goes along their
+  /// axis, or stays where there are several.
   void add(std::vector<ClassMember> const& members, std::size_t k, std::span<Mat3 const> around, Index32 of,
            JointSlip& to);
 

@@ -234,7 +234,8 @@ class Finder {
     }
   }
 
-  /// 1e-6 of the patch's size, and the rounding of its coordinates, at least that of single precision, wherever they are.
+  /// 1e-6 of the patch's size, and the rounding of its coordinates, at least that of single precision, wherever they
+  /// are.
   [[nodiscard]] double flat(double extent, std::vector<Vec3> const& points) const {
     double const largest = largest_component(points);
     return 1e-6 * extent + std::max(2e-7 * largest, 2 * boundary_.precision().at(largest));
@@ -301,7 +302,8 @@ class Finder {
       for (Patches const& members : smoothly_joined(boundary_, patches, options)) {
         SlipSurface surface;
         surface.kind = SlipSurface::Kind::facets;
-        // With what lies beyond the periodic sides, so that nodes can slide out of the sector and normals are the same on both.
+        // With what lies beyond the periodic sides, so that nodes can slide out of the sector and normals are the same
+        // on both.
         surface.facets = FacetSurface::from_facets(
             with_copies(boundary_.facets(members), periodic_copies(boundary_, members)), options);
         surface.origin = surface.facets.boxes.front().low;

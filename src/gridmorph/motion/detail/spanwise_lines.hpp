@@ -15,8 +15,8 @@ namespace gridmorph::detail {
 /// Numbers along a line of a grid of points whose direction 0 varies fastest.
 std::vector<int> grid_line(std::array<int, 2> const& extent, int direction, int line);
 
-/// The direction of a grid along which more of the length of its lines goes into span; -1 where that is less than 0.3 of it (a tip
-/// face). `rise(a, b)`: how far points a and b of the grid are apart in span, a length.
+/// The direction of a grid along which more of the length of its lines goes into span; -1 where that is less than 0.3
+/// of it (a tip face). `rise(a, b)`: how far points a and b of the grid are apart in span, a length.
 int spanwise_direction(std::array<int, 2> const& extent, std::function<Vec3(int)> const& point,
                        std::function<double(int, int)> const& rise);
 

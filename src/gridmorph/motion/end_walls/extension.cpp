@@ -17,8 +17,9 @@ namespace {
 
 constexpr double least_left = 0.1;  // of a line
 
-/// How far along the line the wall is from one of its ends; exactly 0 where the end is on it. The foot of a blade may come to lie beside
-/// the wall, in what was inside of the blade: there the wall goes on along the planes of its facets, for as far as the foot moves.
+/// How far along the line the wall is from one of its ends; exactly 0 where the end is on it. The foot of a blade may
+/// come to lie beside the wall, in what was inside of the blade: there the wall goes on along the planes of its facets,
+/// for as far as the foot moves.
 double way_to(MovedWall const& wall, ArcCurve const& line, bool upper, std::string const& name) {
   double const start = upper ? line.length() : 0;
   double s = start;

@@ -10,14 +10,15 @@
 
 namespace gridmorph {
 
-/// The spanwise grid lines of the patches slide along themselves. A line is a C1 cubic over its arc length s through its nodes, with slopes
-/// of parabolas through three of them, and goes on straight beyond its ends. An end on a wall that moves goes to s + d, where the line meets the
-/// moved facets of the wall (Newton's method); between the ends d is linear in s, so that spacings grow alike all along a line.
-/// Ends on no such wall stay, and so do nodes on no line (tip faces).
+/// The spanwise grid lines of the patches slide along themselves. A line is a C1 cubic over its arc length s through
+/// its nodes, with slopes of parabolas through three of them, and goes on straight beyond its ends. An end on a wall
+/// that moves goes to s + d, where the line meets the moved facets of the wall (Newton's method); between the ends d is
+/// linear in s, so that spacings grow alike all along a line. Ends on no such wall stay, and so do nodes on no line
+/// (tip faces).
 class ExtensionMotion {
  public:
-  /// Throws MotionError, beginning with `name`, where faces of elements do not stand in rows, no line ends on the walls, a line does not meet
-  /// its wall, or less than a tenth of one is left. Cost O(nodes log).
+  /// Throws MotionError, beginning with `name`, where faces of elements do not stand in rows, no line ends on the
+  /// walls, a line does not meet its wall, or less than a tenth of one is left. Cost O(nodes log).
   ExtensionMotion(Boundary const& boundary, std::vector<int> const& patches, std::span<MovedWall const* const> walls,
                   std::string const& name, std::vector<std::string>& notes);
 

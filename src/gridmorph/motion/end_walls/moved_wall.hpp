@@ -16,7 +16,8 @@ class MovedWall {
  public:
   using Displacement = std::function<void(std::span<Vec3 const> points, std::span<Vec3> out)>;
 
-  /// `anywhere`: the displacement is known beside the nodes too. Throws MotionError, beginning with `name`, where there are no faces.
+  /// `anywhere`: the displacement is known beside the nodes too. Throws MotionError, beginning with `name`, where there
+  /// are no faces.
   MovedWall(Boundary const& boundary, std::vector<int> patches, Displacement displacement, bool anywhere,
             std::string const& name);
 
@@ -32,8 +33,8 @@ class MovedWall {
   [[nodiscard]] TargetTree const& moved() const { return moved_; }
   /// Where vertex v goes if it is first moved along the wall by `shift`: its own place for no shift.
   [[nodiscard]] Vec3 displaced(int v, Vec3 const& shift) const;
-  /// The shift with which vertex v goes by u: displaced(v, shift_to(v, u)) = u, by fixed-point iteration. Throws MotionError, beginning
-  /// with `name`, where the wall's displacement changes too fast from place to place for that.
+  /// The shift with which vertex v goes by u: displaced(v, shift_to(v, u)) = u, by fixed-point iteration. Throws
+  /// MotionError, beginning with `name`, where the wall's displacement changes too fast from place to place for that.
   [[nodiscard]] Vec3 shift_to(int v, Vec3 const& u, std::string const& name) const;
 
  private:

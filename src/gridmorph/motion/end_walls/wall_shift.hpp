@@ -13,9 +13,10 @@ namespace gridmorph {
 ///
 ///     shift(p) = (1 - c1(d / D)) sum_j r_j^-4 e_j / sum_j r_j^-4,   c1(t) = t^2 (3 - 2 t),
 ///
-/// e_j the shift with which node j of the blades' rims goes where its blade says (MovedWall::shift_to), r_j its distance from p, its periodic copies among
-/// them; d the distance of p from the rims along the edges of the wall, D that of the nearest node that other patches have too (inlet, outlet;
-/// the farthest node where there is none). Then the wall's rule at p + shift takes the node onto the moved wall.
+/// e_j the shift with which node j of the blades' rims goes where its blade says (MovedWall::shift_to), r_j its
+/// distance from p, its periodic copies among them; d the distance of p from the rims along the edges of the wall, D
+/// that of the nearest node that other patches have too (inlet, outlet; the farthest node where there is none). Then
+/// the wall's rule at p + shift takes the node onto the moved wall.
 class WallShift {
  public:
   /// Throws what shift_to() does. Cost O(nodes of the wall x nodes of the rims).

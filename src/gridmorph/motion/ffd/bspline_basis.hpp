@@ -7,8 +7,9 @@
 
 namespace gridmorph {
 
-/// B_0 ... B_(count-1) of one degree: sum B_n = 1, B_n >= 0. With spans = count - degree the knots between are m / spans, m = 1 ... spans - 1; the motion has degree - 1 continuous
-/// derivatives there. Values by the recurrence of Cox and de Boor (Piegl and Tiller, The NURBS Book, 1997, A2.2).
+/// B_0 ... B_(count-1) of one degree: sum B_n = 1, B_n >= 0. With spans = count - degree the knots between are m /
+/// spans, m = 1 ... spans - 1; the motion has degree - 1 continuous derivatives there. Values by the recurrence of Cox
+/// and de Boor (Piegl and Tiller, The NURBS Book, 1997, A2.2).
 class BSplineBasis {
  public:
   /// degree: 0 where count is 1, else 1 ... min(count - 1, FfdRule::most_degree).

@@ -15,13 +15,15 @@ namespace gridmorph {
 /// The lattice of an ffd rule as it stands, before anything is displaced. A value that is not changed.
 class FfdLattice {
  public:
-  /// Of a rule with a box, or with points that make a lattice of any shape. Throws MotionError where that folds. `name` begins messages.
+  /// Of a rule with a box, or with points that make a lattice of any shape. Throws MotionError where that folds. `name`
+  /// begins messages.
   FfdLattice(FfdRule const& rule, std::string const& name);
 
-  /// (s, t, w) of a point, each in [0, 1]; nothing for points outside. Points within 1e-9 of the lattice are inside. Throws MotionError where
-  /// Newton's method finds no place (lattices that are no boxes).
+  /// (s, t, w) of a point, each in [0, 1]; nothing for points outside. Points within 1e-9 of the lattice are inside.
+  /// Throws MotionError where Newton's method finds no place (lattices that are no boxes).
   [[nodiscard]] std::optional<Vec3> place(Vec3 const& point) const;
-  /// Where a control point stands; those of a box so that displacements linear in it displace points by the same linear function.
+  /// Where a control point stands; those of a box so that displacements linear in it displace points by the same linear
+  /// function.
   [[nodiscard]] Vec3 control_point(int i, int j, int k) const;
   /// Change of (s, t, w) along a straight step from a place, to first order.
   [[nodiscard]] Vec3 step(Vec3 const& place, Vec3 const& step) const;

@@ -16,16 +16,19 @@ namespace gridmorph {
 
 class FfdMotion {
  public:
-  /// Finds the box of a rule without one, the nodes inside, and the faces through which the patches run out of the lattice. Throws MotionError where no node is
-  /// inside, or where control points move that such a face holds. `name` begins its messages and notes. Cost O(nodes (degree + 1)^3).
+  /// Finds the box of a rule without one, the nodes inside, and the faces through which the patches run out of the
+  /// lattice. Throws MotionError where no node is inside, or where control points move that such a face holds. `name`
+  /// begins its messages and notes. Cost O(nodes (degree + 1)^3).
   FfdMotion(Boundary const& boundary, std::vector<int> const& patches, FfdRule const& rule, std::string const& name,
             std::vector<std::string>& notes);
   /// Other displacements of the same control points; cost O(control points).
   FfdMotion(FfdMotion const& other, FfdRule const& rule, std::string const& name);
 
-  /// Displacement of points, nodes or others; exactly zero outside of the lattice, exactly that of the control points where they are all displaced alike.
+  /// Displacement of points, nodes or others; exactly zero outside of the lattice, exactly that of the control points
+  /// where they are all displaced alike.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
-  /// Adds share * B_i B_j B_k dJ_du to the control points around a point: the transpose of displacement(). Nothing for those that are held.
+  /// Adds share * B_i B_j B_k dJ_du to the control points around a point: the transpose of displacement(). Nothing for
+  /// those that are held.
   void add_gradient(Vec3 const& point, Vec3 const& dJ_du, std::span<Vec3> dJ_dd) const;
 
   [[nodiscard]] FfdLattice const& lattice() const { return ground_->lattice; }

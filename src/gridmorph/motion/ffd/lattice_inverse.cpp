@@ -21,7 +21,8 @@ double& along_axis(Vec3& v, int a) { return a == 0 ? v.x : a == 1 ? v.y : v.z; }
 Vec3 lower_corner(Vec3 const& a, Vec3 const& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3 upper_corner(Vec3 const& a, Vec3 const& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-/// The step along some of three columns that comes closest to r: Gram and Schmidt. Columns that add no direction get none.
+/// The step along some of three columns that comes closest to r: Gram and Schmidt. Columns that add no direction get
+/// none.
 Vec3 closest_step(std::array<Vec3, 3> const& column, std::array<bool, 3> const& free, Vec3 r) {
   std::array<Vec3, 3> unit{};
   std::array<std::array<double, 3>, 3> upper{};

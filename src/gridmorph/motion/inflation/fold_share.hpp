@@ -13,8 +13,9 @@ struct Fold {
   int vertex = -1;
 };
 
-/// The smallest share s of the displacements u of the vertices, up to 1, at which a corner of a face has less than a hundredth of its
-/// baseline area, counted along the face's baseline normal n: with edges e, f from the corner, ((e + s du) x (f + s dv)) . n =
+/// The smallest share s of the displacements u of the vertices, up to 1, at which a corner of a face has less than a
+/// hundredth of its baseline area, counted along the face's baseline normal n: with edges e, f from the corner, ((e + s
+/// du) x (f + s dv)) . n =
 /// ((e x f) . n) / 100, a quadratic in s. Of lines the same with their length. Cost O(faces).
 Fold fold_share(PatchSurface const& surface, std::span<Vec3 const> displacement);
 

@@ -15,8 +15,8 @@ namespace gridmorph {
 
 class InflateMotion {
  public:
-  /// Throws MotionError where the surface has no normal, the height is not finite or too large. `name` begins its messages and notes.
-  /// Cost O(nodes log nodes).
+  /// Throws MotionError where the surface has no normal, the height is not finite or too large. `name` begins its
+  /// messages and notes. Cost O(nodes log nodes).
   InflateMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& patches,
                 InflateRule const& rule, std::shared_ptr<SlipSurfaces const> const& slip, std::string const& name,
                 std::vector<std::string>& notes);

@@ -151,7 +151,8 @@ Vec3 SurfaceOffset::displacement(int v, double height) const {
   Vec3 const straight = u;
   for (Slide const& slide : slides_[std::size_t(v)]) {
     Vec3 const along = height * slide.direction;
-    // Off a surface of facets a foot need not be below the point, and the way to it is none that vanishes with the height.
+    // Off a surface of facets a foot need not be below the point, and the way to it is none that vanishes with the
+    // height.
     bool const facets = slide.surface->kind == SlipSurface::Kind::facets;
     Vec3 const back = facets ? Vec3{} : slip_correction(*slide.surface, p, along);
     u += slide.share * (along + back - straight);

@@ -12,19 +12,23 @@
 
 namespace gridmorph {
 
-/// The shortest d across `kept` (unit vectors) with d . n = 1 for the unit normals n, by least squares where there are more than
-/// can be, cut to a length of 2, which edges sharper than 60 degrees would exceed. Zero where all normals lie along `kept` or cancel.
+/// The shortest d across `kept` (unit vectors) with d . n = 1 for the unit normals n, by least squares where there are
+/// more than can be, cut to a length of 2, which edges sharper than 60 degrees would exceed. Zero where all normals lie
+/// along `kept` or cancel.
 ///
-/// With m = n less its part along `kept`, M = sum m m^T and its principal axes a_k with moments l_k: d = sum (a_k . sum m / l_k) a_k.
+/// With m = n less its part along `kept`, M = sum m m^T and its principal axes a_k with moments l_k: d = sum (a_k . sum
+/// m / l_k) a_k.
 Vec3 offset_direction(std::span<Vec3 const> normals, std::span<Vec3 const> kept);
 
 /// Directions of all vertices: offset_direction() of their VertexNormals.
 ///
-/// Vertices of slip surfaces move within these, by as much as keeps the offset of the faces (`directions`); what that changes fades over
-/// the rest of the surface, to zero at the vertex farthest from the slip surface along the edges. It is a motion within the faces.
+/// Vertices of slip surfaces move within these, by as much as keeps the offset of the faces (`directions`); what that
+/// changes fades over the rest of the surface, to zero at the vertex farthest from the slip surface along the edges. It
+/// is a motion within the faces.
 class SurfaceOffset {
  public:
-  /// `slip` must outlive this. Throws MotionError, beginning with `name`, where a vertex has no normal. Cost O(vertices log vertices).
+  /// `slip` must outlive this. Throws MotionError, beginning with `name`, where a vertex has no normal. Cost O(vertices
+  /// log vertices).
   SurfaceOffset(Boundary const& boundary, PatchSurface const& surface, SlipSurfaces const& slip,
                 double crease_angle_deg, std::string const& name);
 

@@ -10,10 +10,11 @@
 
 namespace gridmorph {
 
-/// A vertex has one normal per smooth part of the surface around it, into the mesh: the mean of the normals of its faces' corners,
-/// weighted by their angles (Thuermer and Wuethrich 1998), so that it does not depend on how flat faces are cut. Corners whose normals are
-/// less than the crease angle apart, or are joined by others between, are one part. Faces beyond periodic connections count, turned back.
-/// Nodes that are no corners of faces (middles of the sides of curved elements) have the means of those of the corners around.
+/// A vertex has one normal per smooth part of the surface around it, into the mesh: the mean of the normals of its
+/// faces' corners, weighted by their angles (Thuermer and Wuethrich 1998), so that it does not depend on how flat faces
+/// are cut. Corners whose normals are less than the crease angle apart, or are joined by others between, are one part.
+/// Faces beyond periodic connections count, turned back. Nodes that are no corners of faces (middles of the sides of
+/// curved elements) have the means of those of the corners around.
 class VertexNormals {
  public:
   /// Cost O(faces), and O(log) for each node that is no corner.

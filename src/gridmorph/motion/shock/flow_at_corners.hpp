@@ -41,8 +41,9 @@ struct FlowAtNodes {
 };
 
 /// Pressure and velocity are made of Density, Momentum and EnergyStagnationDensity where the solution has these alone:
-/// p = (gamma - 1) (rho E - rho v^2 / 2), a^2 = gamma p / rho. The units of the solution have to be of one system, whichever. Values in cells become the mean of the cells around each node. Throws
-/// MotionError where something lacks, with what there is. Cost O(nodes + cells).
+/// p = (gamma - 1) (rho E - rho v^2 / 2), a^2 = gamma p / rho. The units of the solution have to be of one system,
+/// whichever. Values in cells become the mean of the cells around each node. Throws MotionError where something lacks,
+/// with what there is. Cost O(nodes + cells).
 FlowAtNodes flow_at_nodes(CellCorners const& cells, FlowSolution const& solution, ShockSearch const& search);
 
 }  // namespace gridmorph

@@ -175,7 +175,8 @@ class ShockFinder {
     found_ = Index(reading_.size());
   }
 
-  /// The smallest number among a node, those at its place and their periodic copies: cells that share one are neighbours.
+  /// The smallest number among a node, those at its place and their periodic copies: cells that share one are
+  /// neighbours.
   [[nodiscard]] Index place(Index node) const { return place_[std::size_t(node)]; }
 
   template <class Look>
@@ -185,7 +186,8 @@ class ShockFinder {
     });
   }
 
-  /// Along the gradient the rise over a cell is what it has of the whole jump, across it its size is what it has of the shock.
+  /// Along the gradient the rise over a cell is what it has of the whole jump, across it its size is what it has of the
+  /// shock.
   void collect() {
     std::size_t next = 0;
     Vec3 sum;

@@ -14,10 +14,12 @@ namespace gridmorph {
 ///
 ///     u(x) = u_w + share smoothstep(|x - x_w| / fade) v(x)
 ///
-/// v: ShockShift; x_w, u_w: the nearest place of the walls and its displacement, which the region takes up, so that both agree where they meet. Without walls u = share v.
+/// v: ShockShift; x_w, u_w: the nearest place of the walls and its displacement, which the region takes up, so that
+/// both agree where they meet. Without walls u = share v.
 class ShockMotion {
  public:
-  /// `displacement`: of the walls, which may be none. Throws MotionError where the rule has no shift, and for walls without faces. Cost O(n log n) of the walls.
+  /// `displacement`: of the walls, which may be none. Throws MotionError where the rule has no shift, and for walls
+  /// without faces. Cost O(n log n) of the walls.
   ShockMotion(Boundary const& boundary, ShockRule const& rule, std::vector<int> const& walls,
               WallFaces::Displacement const& displacement);
 

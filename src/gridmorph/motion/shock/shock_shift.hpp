@@ -8,16 +8,21 @@
 
 namespace gridmorph {
 
-/// A shock is seen as a sheet over the plane across a direction d: at a place t of that plane it stands at the height h(t) of the linear function that fits the heights x . d of its
-/// points x within a radius r of t best (least squares), each with its weight times (1 - s^2 / r^2)^2, s its distance from t in the plane. Where two solutions have the shock at h0 and h1, it goes by
+/// A shock is seen as a sheet over the plane across a direction d: at a place t of that plane it stands at the height
+/// h(t) of the linear function that fits the heights x . d of its points x within a radius r of t best (least squares),
+/// each with its weight times (1 - s^2 / r^2)^2, s its distance from t in the plane. Where two solutions have the shock
+/// at h0 and h1, it goes by
 ///
 ///     v = (h1(t) - h0(t)) d
 ///
-/// at the points of the first, as far as the second covers them: the mean place of its points there is within r / 2 of t. From there v is spread by the weighted mean; a place further than r from all of them takes that of the nearest. The
-/// heights are exact for a plane sheet and a profile that is symmetric about the shock. Folded sheets (a bow shock seen from the side) are not told apart: take a region of each part.
+/// at the points of the first, as far as the second covers them: the mean place of its points there is within r / 2 of
+/// t. From there v is spread by the weighted mean; a place further than r from all of them takes that of the nearest.
+/// The heights are exact for a plane sheet and a profile that is symmetric about the shock. Folded sheets (a bow shock
+/// seen from the side) are not told apart: take a region of each part.
 class ShockShift {
  public:
-  /// `direction`: length 1; `radius` > 0. Throws MotionError where the second shock covers no point of the first. Cost O(n log n) points, times those within a radius.
+  /// `direction`: length 1; `radius` > 0. Throws MotionError where the second shock covers no point of the first. Cost
+  /// O(n log n) points, times those within a radius.
   ShockShift(std::vector<ShockPoint> const& from, std::vector<ShockPoint> const& to, Vec3 const& direction,
              double radius);
 

@@ -83,8 +83,9 @@ class EdgeMapper {
     Vec3 shift;        ///< from the guess to the partner, where they are apart
   };
 
-  /// Holes are farther from where they go than from one another as soon as they move by more than they are wide: the nearest edge is
-  /// another hole's. So loops go to loops, and the guess is brought to them where it is off by more than half their radius.
+  /// Holes are farther from where they go than from one another as soon as they move by more than they are wide: the
+  /// nearest edge is another hole's. So loops go to loops, and the guess is brought to them where it is off by more
+  /// than half their radius.
   void find_loops(std::set<std::pair<int, int>> const& boundary, std::set<std::pair<int, int>> const& of_target) {
     std::vector<Vec3> guessed = points_;
     for (std::size_t v = 0; v < points_.size(); ++v)
@@ -180,8 +181,8 @@ class EdgeMapper {
     untangle();
   }
 
-  /// Swaps partners while that lessens the squares of the distances, which a common shift of all corners does not change:
-  /// the two corners of a thin base are far nearer to one another than to where they go.
+  /// Swaps partners while that lessens the squares of the distances, which a common shift of all corners does not
+  /// change: the two corners of a thin base are far nearer to one another than to where they go.
   void untangle() {
     std::vector<int> paired;
     for (int v = 0; v < int(points_.size()); ++v)
@@ -208,8 +209,8 @@ class EdgeMapper {
     }
   }
 
-  /// Where the end of a chain goes: to its partner, or to the nearest point of an edge, of those that ways from the partner
-  /// of the other end lead to, or of those of its loop's partner.
+  /// Where the end of a chain goes: to its partner, or to the nearest point of an edge, of those that ways from the
+  /// partner of the other end lead to, or of those of its loop's partner.
   int place_of(int vertex, int other_end) {
     int const start = place_[other_end] >= 0 ? place_[other_end] : loop_[std::size_t(vertex)].place;
     if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_of(vertex), start);
@@ -258,8 +259,8 @@ class EdgeMapper {
     return true;
   }
 
-  /// The way between two places that stays beside a line, once the ends of the line are brought there: what the guess is
-  /// off by at the ends it is off by between them, while the other side of a thin section may be nearer.
+  /// The way between two places that stays beside a line, once the ends of the line are brought there: what the guess
+  /// is off by at the ends it is off by between them, while the other side of a thin section may be nearer.
   [[nodiscard]] std::optional<std::vector<int>> way_beside(int from, int to, std::vector<Vec3> points) const {
     Polyline const line(points);
     Vec3 const first = network_.point(from) - points.front(), last = network_.point(to) - points.back();

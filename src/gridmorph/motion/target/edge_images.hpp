@@ -20,12 +20,13 @@ struct EdgeImages {
   int mapped = 0, unmapped = 0;             ///< lines of edges with and without a counterpart on the target
 };
 
-/// Maps every chain of feature edges of the surface that has a counterpart on the target. `guess` is a rough idea of where
-/// points of the surface go. Corners are where other than two edges meet, or two at more than 45 degrees; they are
-/// paired nearest first. A chain goes to the way between the images of its ends that stays beside it and leads through no
-/// other corner's image, with equal shares of arc length; a closed one to the loop beside it, turned so that its nodes move least. A chain whose image would be
-/// much farther than the target itself, or of another length (by more than half or double), has no counterpart. Lines around that meet no
-/// other, as the rims of holes, are paired one to one first (pair_loops()): one goes to its partner, wherever the next edge is.
+/// Maps every chain of feature edges of the surface that has a counterpart on the target. `guess` is a rough idea of
+/// where points of the surface go. Corners are where other than two edges meet, or two at more than 45 degrees; they
+/// are paired nearest first. A chain goes to the way between the images of its ends that stays beside it and leads
+/// through no other corner's image, with equal shares of arc length; a closed one to the loop beside it, turned so that
+/// its nodes move least. A chain whose image would be much farther than the target itself, or of another length (by
+/// more than half or double), has no counterpart. Lines around that meet no other, as the rims of holes, are paired one
+/// to one first (pair_loops()): one goes to its partner, wherever the next edge is.
 EdgeImages map_edges(std::vector<Vec3> const& points, std::vector<FeatureEdge> const& edges, TargetTree const& target,
                      std::vector<FeatureEdge> const& target_edges, double size,
                      std::function<Vec3(Vec3 const&)> const& guess);

@@ -18,8 +18,8 @@ struct FeatureEdge {
   bool boundary = false;
 };
 
-/// Edges with one facet (boundary), with more than two, or where the normals of two facets differ by more than the angle.
-/// Ascending. Facets without area make no crease. Cost O(facets log facets).
+/// Edges with one facet (boundary), with more than two, or where the normals of two facets differ by more than the
+/// angle. Ascending. Facets without area make no crease. Cost O(facets log facets).
 std::vector<FeatureEdge> find_feature_edges(std::vector<Vec3> const& points, std::vector<GridFacet> const& facets,
                                             double crease_angle_deg);
 

@@ -38,8 +38,8 @@ class FeatureNetwork {
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
   /// From here on no way leads through the place; ways may begin and end there.
   void close(int place) { closed_[place] = 1; }
-  /// The place nearest to p: a vertex, or a point inside an edge, which becomes a vertex; of those that ways from `start` lead
-  /// to, where it is given. -1 if there is none. Cost O(edges).
+  /// The place nearest to p: a vertex, or a point inside an edge, which becomes a vertex; of those that ways from
+  /// `start` lead to, where it is given. -1 if there is none. Cost O(edges).
   int nearest_place(Vec3 const& p, int start = -1);
   /// The shortest way from one place to the other, where going far from the guide makes a way longer: at a tenth of the
   /// guide's length beside it twice as long. Nothing if there is no way. Cost O(edges (log edges + points of guide)).

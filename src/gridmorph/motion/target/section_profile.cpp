@@ -70,8 +70,8 @@ double SectionProfile::extreme_length(int n, std::function<double(Vec3 const&)> 
   return length_[n] + std::clamp(-slope / bend, -0.5 * h, 0.5 * k);
 }
 
-/// The vertex of the parabola a + b s + c s^2 that fits the measure best around point n, s being the length from there. Points have the weight of the
-/// line beside them.
+/// The vertex of the parabola a + b s + c s^2 that fits the measure best around point n, s being the length from there.
+/// Points have the weight of the line beside them.
 double SectionProfile::fitted_extreme(int n, std::function<double(Vec3 const&)> const& measure) const {
   double const whole = length_.back();
   std::array<double, 5> moment{};  // of s^0 ... s^4

@@ -10,7 +10,8 @@
 
 namespace gridmorph {
 
-/// A position around a section, the same on every section of a blade: on which stretch, and at which share of its length.
+/// A position around a section, the same on every section of a blade: on which stretch, and at which share of its
+/// length.
 struct SectionPosition {
   /// 0: from the trailing edge to the leading edge; 1: from there back to the trailing edge; 2: across the blunt base,
   /// if there is one. Right-handed about the span.
@@ -21,16 +22,17 @@ struct SectionPosition {
 /// A closed curve through the points of a section, C1 except at corners (turns of more than 40 degrees): cubic Hermite
 /// pieces over the arc length of the polygon with slopes from parabolas through three neighbours.
 ///
-/// The trailing edge is the end of the longest chord that lies downstream: the corners within a tenth of the chord of it
-/// (one of a sharp edge, two of a blunt base), otherwise the point farthest from the other end, found between points by
-/// a parabola. The leading edge is the point farthest from there. Both stay where they are when the section is moved
+/// The trailing edge is the end of the longest chord that lies downstream: the corners within a tenth of the chord of
+/// it (one of a sharp edge, two of a blunt base), otherwise the point farthest from the other end, found between points
+/// by a parabola. The leading edge is the point farthest from there. Both stay where they are when the section is moved
 /// rigidly, run through backwards, or started elsewhere.
 ///
 /// Edges::extreme is for H meshes, whose lines across the flow touch the blade in a round edge: there the edges without
 /// corners are the points farthest up- and downstream, on the mesh as on the target.
 ///
-/// `window` is for cuts through facets, whose points may be anywhere: parabolas at edges without corners then fit, by least squares, the points within
-/// so many of the mean distances between points around there, and the next ones on both sides.
+/// `window` is for cuts through facets, whose points may be anywhere: parabolas at edges without corners then fit, by
+/// least squares, the points within so many of the mean distances between points around there, and the next ones on
+/// both sides.
 class SectionProfile {
  public:
   enum class Edges { farthest, extreme };

@@ -101,7 +101,8 @@ Ends find_rims(std::vector<Vec3> const& points, std::vector<std::array<int, 3>> 
   return out;
 }
 
-/// The place of a polygon nearest to p: the point from which it lies, the share of the way to the next one, and how far.
+/// The place of a polygon nearest to p: the point from which it lies, the share of the way to the next one, and how
+/// far.
 struct OnLine {
   int after = 0;
   double t = 0, distance = std::numeric_limits<double>::infinity();
@@ -206,8 +207,9 @@ class Slicer {
               [&](int a, int b) { return std::pair(share_[a], a) < std::pair(share_[b], b); });
   }
 
-  /// Nodes as many edges from the lower end as one another are a row, where all of them lie far closer together along the span than to the next
-  /// rows. They get the mean of their shares, so that cuts go through them. Whether nodes stand in rows.
+  /// Nodes as many edges from the lower end as one another are a row, where all of them lie far closer together along
+  /// the span than to the next rows. They get the mean of their shares, so that cuts go through them. Whether nodes
+  /// stand in rows.
   bool snap_rows(Whole const& whole) {
     auto const triangles = whole.cuts.corners(whole.part().triangles());
     std::vector<std::vector<int>> beside(share_.size());
@@ -287,8 +289,8 @@ class Slicer {
     return out;
   }
 
-  /// Where a node that lies between two cuts would be in one of them: the chord at its span, linear between theirs, goes to the cut's chord, and what is
-  /// across it turns and grows along.
+  /// Where a node that lies between two cuts would be in one of them: the chord at its span, linear between theirs,
+  /// goes to the cut's chord, and what is across it turns and grows along.
   [[nodiscard]] Vec3 carried_to(Cut const& cut, Cut const& low, Cut const& high, double t, Vec3 const& p) const {
     Vec3 const from = low.leading + t * (high.leading - low.leading),
                chord = low.trailing + t * (high.trailing - low.trailing) - from, to = cut.trailing - cut.leading;

@@ -16,8 +16,9 @@ namespace gridmorph {
 
 class TargetMotion {
  public:
-  /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes. `slides`: what nodes of other
-  /// patches slide on; a target to project to is cut off at the planes among them that these patches end on.
+  /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
+  /// `slides`: what nodes of other patches slide on; a target to project to is cut off at the planes among them that
+  /// these patches end on.
   TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
                std::vector<SlipSurface> const& slides, std::string const& name, std::vector<std::string>& notes);
 

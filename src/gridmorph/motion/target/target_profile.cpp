@@ -155,8 +155,8 @@ Moments moments(std::vector<Vec3> const& points, std::vector<FeatureEdge> const&
   return out;
 }
 
-/// Lines without a corner say nothing about how they turned, other than by their moments: the surface goes along with these where
-/// that brings it at least as near to the target as its box does.
+/// Lines without a corner say nothing about how they turned, other than by their moments: the surface goes along with
+/// these where that brings it at least as near to the target as its box does.
 std::function<Vec3(Vec3 const&)> guess(std::vector<Vec3> const& points, std::vector<FeatureEdge> const& lines,
                                        Strip const& strip) {
   auto const rough = rough_guess(points, strip.tree);

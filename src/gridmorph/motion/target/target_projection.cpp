@@ -130,8 +130,8 @@ class Projection {
   }
 
  private:
-  /// Where the vertices of a surface without edges go, roughly: with its size and its middle, by area; with the sides of its box
-  /// where that comes much closer.
+  /// Where the vertices of a surface without edges go, roughly: with its size and its middle, by area; with the sides
+  /// of its box where that comes much closer.
   [[nodiscard]] std::vector<Vec3> closed_guess() const {
     auto const [from, own] = middle_and_area(points_, facets_);
     auto const [to, there] = middle_and_area(target_.points(), target_facets_);
@@ -177,8 +177,8 @@ class Projection {
     sense_ = same >= 0.7 * all ? 1 : (same <= 0.3 * all ? -1 : 0);
   }
 
-  /// Which piece of the target, between the edges that edges are mapped to, the nodes of each piece of the surface belong to:
-  /// that to which more than 60 % of them are nearest; none where the pieces do not correspond.
+  /// Which piece of the target, between the edges that edges are mapped to, the nodes of each piece of the surface
+  /// belong to: that to which more than 60 % of them are nearest; none where the pieces do not correspond.
   void find_pieces() {
     auto const piece = pieces_between(facets_, edges_.edges);
     target_piece_ = pieces_between(target_facets_, edges_.on_target);

@@ -10,7 +10,8 @@
 
 namespace gridmorph {
 
-/// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly elsewhere.
+/// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly
+/// elsewhere.
 std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, TargetTree const& target);
 
 /// Displacement of every vertex of the surface onto the target:

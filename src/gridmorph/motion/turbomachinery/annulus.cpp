@@ -45,7 +45,8 @@ Annulus::Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidate
                                        [&](MeridionalPoint const& p) { return p.radius > surface.profile(p.axial); });
     (2 * std::size_t(outside) > blade.size() ? inner_ : outer_).push_back(&surface.profile);
   }
-  // A wall that is no function of the axial position makes a row that turns, unless the blade lies where hub and case both are.
+  // A wall that is no function of the axial position makes a row that turns, unless the blade lies where hub and case
+  // both are.
   bool const must_turn = meridional && !(has_walls() && spans(blade));
   bool const may_turn = !has_walls() || is_steep_along(blade);
   if (must_turn || may_turn) {

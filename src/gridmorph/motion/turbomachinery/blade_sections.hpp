@@ -31,8 +31,8 @@ class BladeSections {
   /// Chord fraction 0 is the leading edge, 1 the trailing edge; clamped to these.
   [[nodiscard]] CylindricalMotion motion(double span, double chord_fraction) const;
 
-  /// How far the motions of the contours' edges are from their mean, which the edges of the row get: nothing but rounding for one blade, and for copies that
-  /// move alike; what blunt edges make of two sides.
+  /// How far the motions of the contours' edges are from their mean, which the edges of the row get: nothing but
+  /// rounding for one blade, and for copies that move alike; what blunt edges make of two sides.
   struct EdgeSpread {
     double length = 0;  ///< along the flow or the span, in chords
     double angle_rad = 0;

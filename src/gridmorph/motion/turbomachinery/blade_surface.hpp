@@ -49,16 +49,16 @@ struct BladeInput {
 /// Stitches the grids of the patches: finds which direction of each runs spanwise, joins pieces that
 /// were split in span or around the section by their coincident nodes (1e-7 of the blade's size). Pieces that run
 /// nowhere spanwise (tip faces) are left out with a note. Faces of elements are put together into grids first
-/// (find_face_grids()), the lines of a plane mesh with their copies across it; where that leaves faces over, or lines that
-/// do not run along the span together, the facets are cut instead (slice_surface()), and motions are those of their
-/// corners, linear between. Throws MotionError when nothing is left or more than two
-/// surfaces meet in one line. Cost O(nodes log nodes), of cuts as slice_surface().
+/// (find_face_grids()), the lines of a plane mesh with their copies across it; where that leaves faces over, or lines
+/// that do not run along the span together, the facets are cut instead (slice_surface()), and motions are those of
+/// their corners, linear between. Throws MotionError when nothing is left or more than two surfaces meet in one line.
+/// Cost O(nodes log nodes), of cuts as slice_surface().
 BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
 
-/// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one does,
-/// by more than 15 % of its chord. What is left are the sides of one blade, or copies of it. Returns how many were left out.
-/// Throws MotionError when a contour lies wholly before or behind the longest: that is another row.
+/// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one
+/// does, by more than 15 % of its chord. What is left are the sides of one blade, or copies of it. Returns how many
+/// were left out. Throws MotionError when a contour lies wholly before or behind the longest: that is another row.
 int leave_out_splitters(BladeSurface& blade);
 
 }  // namespace gridmorph

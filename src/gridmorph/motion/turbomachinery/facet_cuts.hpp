@@ -26,7 +26,8 @@ inline constexpr double least_span_gain = 0.3;
 /// Length of the gradient of the values at its corners in a triangle; 0 where it has no area.
 double gradient_in(std::array<Vec3, 3> const& corners, std::array<double, 3> const& values);
 
-/// A place on the surface: a weighted mean of its points. Its span is that of its section, which places inside facets are a little off.
+/// A place on the surface: a weighted mean of its points. Its span is that of its section, which places inside facets
+/// are a little off.
 struct SlicePlace {
   std::vector<std::pair<int, double>> weights;
   Vec3 point;
@@ -57,8 +58,8 @@ struct SurfacePart {
 /// Triangles that gain span (least_span_gain) with their edges. Keeps a reference to its input.
 class FacetCuts {
  public:
-  /// Ends of the span are whole lines of nodes but for round-off: spans within 1e-9 of the whole of them are theirs. Throws MotionError when no
-  /// triangle gains span. Cost O(triangles, log).
+  /// Ends of the span are whole lines of nodes but for round-off: spans within 1e-9 of the whole of them are theirs.
+  /// Throws MotionError when no triangle gains span. Cost O(triangles, log).
   explicit FacetCuts(SliceInput const& input);
 
   [[nodiscard]] std::vector<SurfacePart> parts() const;
@@ -68,10 +69,12 @@ class FacetCuts {
   /// Mean span that a triangle takes up.
   [[nodiscard]] double step(SurfacePart const& part) const;
 
-  /// The contour of a part at a span fraction, without points where it has none: the line that reaches farthest. Pieces with gaps of less
-  /// than a tenth of the extent between them are one. `upper`: points at the span fraction are above it. Cost: the triangles beside it.
+  /// The contour of a part at a span fraction, without points where it has none: the line that reaches farthest. Pieces
+  /// with gaps of less than a tenth of the extent between them are one. `upper`: points at the span fraction are above
+  /// it. Cost: the triangles beside it.
   [[nodiscard]] CutLine cut(SurfacePart const& part, double span, bool upper) const;
-  /// Where an edge has the span fraction: by secants, since span is not linear along an edge where hub or case are curved.
+  /// Where an edge has the span fraction: by secants, since span is not linear along an edge where hub or case are
+  /// curved.
   [[nodiscard]] SlicePlace place(int edge, double span) const;
 
  private:

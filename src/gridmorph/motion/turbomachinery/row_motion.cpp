@@ -101,8 +101,8 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
   return sections;
 }
 
-/// Directions of the translations among the periodic connections of the zones, none twice; `followers`: of those alone that follow a
-/// blade. Nothing when one of them turns.
+/// Directions of the translations among the periodic connections of the zones, none twice; `followers`: of those alone
+/// that follow a blade. Nothing when one of them turns.
 std::optional<std::vector<Vec3>> pitch_directions(Boundary const& boundary, ResolvedMotion const& motion,
                                                   std::vector<bool> const& in_row, bool followers) {
   constexpr double no_turn = 1e-9, same = 1e-6;
@@ -131,7 +131,8 @@ Vec3 upwards(Vec3 const& v) {
   return largest < 0 ? -v : v;
 }
 
-/// Whether the row is in a plane across a direction (unit): of a plane mesh, or one cell thick, so that its nodes are on two planes.
+/// Whether the row is in a plane across a direction (unit): of a plane mesh, or one cell thick, so that its nodes are
+/// on two planes.
 bool lies_across(Boundary const& boundary, std::vector<bool> const& in_row, Vec3 const& direction) {
   constexpr double parallel = 1e-6, flat = 1e-3;  // of the distance between the planes
   if (boundary.is_plane()) return norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());

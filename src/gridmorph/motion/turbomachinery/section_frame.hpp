@@ -18,7 +18,8 @@ struct SectionPoint {
   double unit = 1;  ///< length of a unit of t at the point itself
 };
 
-/// Splits space into sections. Points that are equal get equal coordinates; copies turned about the axis differ in t alone.
+/// Splits space into sections. Points that are equal get equal coordinates; copies turned about the axis differ in t
+/// alone.
 class SectionFrame {
  public:
   virtual ~SectionFrame() = default;
@@ -26,7 +27,8 @@ class SectionFrame {
   [[nodiscard]] virtual SectionPoint at(Vec3 const& point) const = 0;
   /// The displacement of a point within its section surface by ds and dt. Exactly zero for zero.
   [[nodiscard]] virtual Vec3 displacement(Vec3 const& point, double ds, double dt) const = 0;
-  /// A displacement at one point as it is at another: of a wing the same, of a blade the same along and across the flow path and about the axis.
+  /// A displacement at one point as it is at another: of a wing the same, of a blade the same along and across the flow
+  /// path and about the axis.
   [[nodiscard]] virtual Vec3 carried(Vec3 const& from, Vec3 const& displacement, Vec3 const& to) const = 0;
   /// Length from span fraction 0 to 1: the mean over the nodes.
   [[nodiscard]] virtual double height() const = 0;
@@ -38,14 +40,14 @@ class SectionFrame {
   [[nodiscard]] virtual BladeInput stitching() const = 0;
 };
 
-/// Sections at constant span fraction between hub and case: s is the axial position, t the angle about the axis, or the position
-/// along the pitch of a linear cascade.
+/// Sections at constant span fraction between hub and case: s is the axial position, t the angle about the axis, or the
+/// position along the pitch of a linear cascade.
 std::unique_ptr<SectionFrame> blade_frame(Boundary const& boundary, ResolvedMotion const& motion,
                                           SlipSurfaces const& surfaces, std::vector<int> const& blades);
 
-/// Plane sections across the span direction of a wing: s along the flow, t = span x s. The span direction is the rule's;
-/// without one the normal of a plane mesh, else of the symmetry plane the wing stands on, without that its longest extent. Throws MotionError
-/// when the flow runs along the span.
+/// Plane sections across the span direction of a wing: s along the flow, t = span x s. The span direction is the
+/// rule's; without one the normal of a plane mesh, else of the symmetry plane the wing stands on, without that its
+/// longest extent. Throws MotionError when the flow runs along the span.
 std::unique_ptr<SectionFrame> wing_frame(Boundary const& boundary, SectionsRule const& rule,
                                          std::vector<int> const& patches);
 

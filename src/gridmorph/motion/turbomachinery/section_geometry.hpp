@@ -29,8 +29,9 @@ struct ChordPoint {
 /// The leading and trailing edge of a section are the two points farthest apart, the leading one upstream. Where the
 /// surface has corners there (a line in which it turns by more than 50 degrees, an end of an open surface) within a
 /// tenth of the chord, the edge is the middle of the corners: one corner of a sharp edge, two of a blunt base.
-/// Otherwise it is found between grid lines by a parabola. R, the length of a unit of t, is the mean of the two. Camber is the mean of the two sides, measured across the
-/// chord line at equal chord fraction. Between the sections: C1 cubics.
+/// Otherwise it is found between grid lines by a parabola. R, the length of a unit of t, is the mean of the two. Camber
+/// is the mean of the two sides, measured across the chord line at equal chord fraction. Between the sections: C1
+/// cubics.
 class SectionGeometry {
  public:
   /// One line along the span as it lies in the section frame.

@@ -13,8 +13,8 @@ namespace gridmorph {
 ///
 /// A motion u takes a point off a surface S by the change of its distance; c_S(u) is the correction that gives the
 /// distance back. Every point gets u + sum_S w_S c_S(u) with w_S = (1 / d_S) / sum_T (1 / d_T), d_S the distance of the
-/// baseline point from S; ends of the span that touch no surface count in the sum with their distance along the span and
-/// have no correction. So w is 1 on the surface itself and, between two ends, falls linearly along the span.
+/// baseline point from S; ends of the span that touch no surface count in the sum with their distance along the span
+/// and have no correction. So w is 1 on the surface itself and, between two ends, falls linearly along the span.
 class EdgeTrim {
  public:
   /// The slip surfaces whose patches share nodes with the given ones. Keeps pointers to `surfaces`.

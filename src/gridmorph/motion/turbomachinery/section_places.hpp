@@ -13,7 +13,8 @@ namespace gridmorph {
 /// The sections of the patches of one rule, and what a point is to them. A function of the position alone.
 class SectionPlaces {
  public:
-  /// Kind, span and flow of `rule` count, its tables do not. Throws MotionError when the sections cannot be made. Cost O(nodes log nodes).
+  /// Kind, span and flow of `rule` count, its tables do not. Throws MotionError when the sections cannot be made. Cost
+  /// O(nodes log nodes).
   SectionPlaces(Boundary const& boundary, ResolvedMotion const& motion, SectionsRule const& rule,
                 std::vector<int> const& patches, SlipSurfaces const& surfaces, std::vector<std::string>& notes);
 

@@ -20,8 +20,8 @@ struct WallPiece {
   }
 };
 
-/// Pieces one after another, by arc length. Points of the curve lie on the profiles to round-off; only how far along they
-/// lie is tabulated. Gaps between pieces are bridged by straight lines; beyond the ends the end pieces go on.
+/// Pieces one after another, by arc length. Points of the curve lie on the profiles to round-off; only how far along
+/// they lie is tabulated. Gaps between pieces are bridged by straight lines; beyond the ends the end pieces go on.
 class WallCurve {
  public:
   explicit WallCurve(std::vector<WallPiece> pieces);
@@ -41,9 +41,9 @@ class WallCurve {
   double length_ = 0;
 };
 
-/// Chains the pieces by their ends, the closest first, until two curves are left: hub first, the one that comes nearest to
-/// the axis. Both begin at the end of the row where the hub's axial position is smaller. Throws MotionError for fewer than
-/// two pieces.
+/// Chains the pieces by their ends, the closest first, until two curves are left: hub first, the one that comes nearest
+/// to the axis. Both begin at the end of the row where the hub's axial position is smaller. Throws MotionError for
+/// fewer than two pieces.
 std::vector<WallCurve> chain_walls(std::vector<WallPiece> pieces);
 
 /// Where a point is in a row: along the flow path, across it.
@@ -52,8 +52,9 @@ struct FlowPosition {
   double h = 0;  ///< span fraction: 0 at the hub, 1 at the case
 };
 
-/// Coordinates of the meridional plane between two curves: straight lines from hub to case join points at equal fractions
-/// of the two arc lengths. m is that fraction times the mean length of the curves, h the fraction of the line:
+/// Coordinates of the meridional plane between two curves: straight lines from hub to case join points at equal
+/// fractions of the two arc lengths. m is that fraction times the mean length of the curves, h the fraction of the
+/// line:
 ///   x(m, h) = (1 - h) hub(m) + h case(m).
 class FlowCoordinates {
  public:

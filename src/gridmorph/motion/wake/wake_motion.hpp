@@ -12,16 +12,22 @@ namespace gridmorph {
 
 /// A point x of the wake of a section moves by
 ///
-///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),   v(x) = f ( T u_e + (D - 1)(x - x_e) ) + (1 - f) b(x),   f = 1 - smoothstep(behind / fade)
+///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),   v(x) = f ( T u_e + (D - 1)(x - x_e) ) + (1 - f)
+///     b(x),   f = 1 - smoothstep(behind / fade)
 ///
-/// b: what the field beside the wake does, which the periodic sides of a blade row follow their blade with; nothing beside wings. x_e, u_e: the trailing edge of its section and its displacement; T: what keeps its components along and across the flow path and about the machine axis from there to the point (wings: its direction); D: the turn in the plane of the section by
-/// `turn` times the angle by which the last tenth of the camber line turns there; x_w, u_w: the nearest place of the walls, which the second term has the wake agree with; r: a
-/// tenth of the chord. A blade that moves as a whole along its row, or about the axis, takes its wake along as a whole; a wing also where it turns in the planes of its sections.
+/// b: what the field beside the wake does, which the periodic sides of a blade row follow their blade with; nothing
+/// beside wings. x_e, u_e: the trailing edge of its section and its displacement; T: what keeps its components along
+/// and across the flow path and about the machine axis from there to the point (wings: its direction); D: the turn in
+/// the plane of the section by `turn` times the angle by which the last tenth of the camber line turns there; x_w, u_w:
+/// the nearest place of the walls, which the second term has the wake agree with; r: a tenth of the chord. A blade that
+/// moves as a whole along its row, or about the axis, takes its wake along as a whole; a wing also where it turns in
+/// the planes of its sections.
 class WakeMotion {
  public:
   using Beside = std::function<Vec3(Vec3 const&)>;
 
-  /// `displacement`: of the walls; `beside`: b, none where the field rests. Throws MotionError when the sections cannot be made or the walls have no faces. Keeps pointers to `surfaces`. Cost O(n log n).
+  /// `displacement`: of the walls; `beside`: b, none where the field rests. Throws MotionError when the sections cannot
+  /// be made or the walls have no faces. Keeps pointers to `surfaces`. Cost O(n log n).
   WakeMotion(Boundary const& boundary, ResolvedMotion const& motion, WakeRule const& rule,
              std::vector<int> const& patches, SlipSurfaces const& surfaces, WallFaces::Displacement const& displacement,
              std::vector<std::string>& notes, Beside beside = {});
@@ -30,7 +36,8 @@ class WakeMotion {
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:
-  /// The nearest place of the walls and of their periodic copies: in H meshes the two sides of a blade are a pitch apart.
+  /// The nearest place of the walls and of their periodic copies: in H meshes the two sides of a blade are a pitch
+  /// apart.
   [[nodiscard]] WallFaces::Place nearest(Vec3 const& x) const;
   [[nodiscard]] std::optional<WallFaces::Place> nearest_within(Vec3 const& x, double reach) const;
   [[nodiscard]] Vec3 behind_edge(Vec3 const& point, WakePlace const& place) const;

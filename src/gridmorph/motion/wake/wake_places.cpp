@@ -8,7 +8,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Copies whose places differ by less than this share of the chord are as good as each other: the point itself is taken.
+/// Copies whose places differ by less than this share of the chord are as good as each other: the point itself is
+/// taken.
 constexpr double alike = 1e-9;
 
 double off_middle(WakePlace const& place) { return std::abs(place.across) + std::max(0.0, -place.behind); }

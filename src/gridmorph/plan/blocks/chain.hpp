@@ -37,7 +37,8 @@ struct Chain {
 /// Walks through every face that is neither known nor on the boundary.
 std::optional<Chain> find_chain(Mesh const& mesh, Topology const& topology, Known const& known, int block, int axis);
 
-/// What an end lies on, or what made the face known that it lies on: families, or names where there is none, in alphabetical order.
+/// What an end lies on, or what made the face known that it lies on: families, or names where there is none, in
+/// alphabetical order.
 std::vector<std::string> end_names(Mesh const& mesh, ChainEnd const& end);
 
 /// The chain seen from its other end.

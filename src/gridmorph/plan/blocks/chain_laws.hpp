@@ -12,7 +12,8 @@
 
 namespace gridmorph {
 
-/// The laws of the options, with the patches that they name looked up in a mesh and tables of those that are the user's own.
+/// The laws of the options, with the patches that they name looked up in a mesh and tables of those that are the user's
+/// own.
 class ChainLaws {
  public:
   /// A law of the options.
@@ -21,27 +22,29 @@ class ChainLaws {
     int own = -1;  ///< which of the user's own
     friend bool operator==(Choice const&, Choice const&) = default;
   };
-  /// From which end of a chain a law starts. either: where nothing tells one from the other a law of the user's own counts by its part
-  /// that is the same from both, (w(t) + 1 - w(1 - t)) / 2.
+  /// From which end of a chain a law starts. either: where nothing tells one from the other a law of the user's own
+  /// counts by its part that is the same from both, (w(t) + 1 - w(1 - t)) / 2.
   enum class From { first, last, either };
   struct OfChain {
     Choice choice;
     From from = From::either;
   };
 
-  /// Throws PlanError for laws of the user's own that tabulate() refuses, and for ends that are neither kinds nor patches.
+  /// Throws PlanError for laws of the user's own that tabulate() refuses, and for ends that are neither kinds nor
+  /// patches.
   ChainLaws(Mesh const& mesh, VolumeOptions const& options);
 
-  /// Which ends of laws name a patch (or, after the patches, an interface); block faces hold patches that are alike in this.
+  /// Which ends of laws name a patch (or, after the patches, an interface); block faces hold patches that are alike in
+  /// this.
   [[nodiscard]] std::vector<char> naming(int patch) const;
 
   [[nodiscard]] Choice usual() const { return usual_; }
-  /// Of a chain by its ends; `given` before all. A law between two ends starts from the first of them, all others from the end that ranks
-  /// better in `kind_order`.
+  /// Of a chain by its ends; `given` before all. A law between two ends starts from the first of them, all others from
+  /// the end that ranks better in `kind_order`.
   [[nodiscard]] OfChain of(Chain const& chain, std::optional<Law> given,
                            std::vector<std::string> const& kind_order) const;
-  /// Along a chain that the law starts from the first end of, or from either. near: of the two ends, those on the edge of a near field,
-  /// which moves as one with its wall: slope zero there.
+  /// Along a chain that the law starts from the first end of, or from either. near: of the two ends, those on the edge
+  /// of a near field, which moves as one with its wall: slope zero there.
   [[nodiscard]] ChainLaw along(OfChain const& law, std::array<bool, 2> const& near) const;
   [[nodiscard]] std::string name(Choice const& choice) const;
 

@@ -59,8 +59,8 @@ template <class ValueIndex>
 void add_gather(PlanContext const& context, PlacedBox const& box, int entity, Index first,
                 ValueIndex const& value_index, std::vector<kernels::NodeCopy>& out);
 
-/// Makes chain number `number` write an entity of a box (category: cs + 3 (ca + 3 cb)): a skeleton sweep, or a term of the
-/// volume pass where it is the inside of piece `piece`; line parameters go where the segment then says.
+/// Makes chain number `number` write an entity of a box (category: cs + 3 (ca + 3 cb)): a skeleton sweep, or a term of
+/// the volume pass where it is the inside of piece `piece`; line parameters go where the segment then says.
 void add_writer(PlanContext const& context, LineTables& lines, std::vector<kernels::SkeletonSweep>& sweeps,
                 std::vector<VolumePart>& volume, int number, PlacedBox const& box, int piece, int entity, int category,
                 kernels::Segment& segment);

@@ -8,9 +8,9 @@
 
 namespace gridmorph {
 
-/// Planes of nodes to keep per zone and axis, ascending: all cuts, and pairs of neighbours, so that what lies between them are whole cells of the
-/// mesh: the first and the last cell of every piece, and of those between one in `every`, spread evenly. The same at both sides of
-/// interfaces. planes: asked for when the mesh is cut.
+/// Planes of nodes to keep per zone and axis, ascending: all cuts, and pairs of neighbours, so that what lies between
+/// them are whole cells of the mesh: the first and the last cell of every piece, and of those between one in `every`,
+/// spread evenly. The same at both sides of interfaces. planes: asked for when the mesh is cut.
 std::vector<ZoneCuts> sampled_planes(Mesh const& mesh, Links const& links, std::vector<CutPlane> const& planes,
                                      int every);
 

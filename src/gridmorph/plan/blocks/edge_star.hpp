@@ -16,8 +16,8 @@ struct EdgeStar {
 };
 EdgeStar star_of(Lattice const& lattice, int edge_class);
 
-/// The face that continues another one across the edge: the one two corners of pieces away, as at a regular edge, or at the rim of a
-/// wall that stands out into the mesh (three corners). -1: none does, or several do.
+/// The face that continues another one across the edge: the one two corners of pieces away, as at a regular edge, or at
+/// the rim of a wall that stands out into the mesh (three corners). -1: none does, or several do.
 int straight_on(EdgeStar const& star, int face_class);
 
 }  // namespace gridmorph

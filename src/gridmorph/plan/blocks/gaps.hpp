@@ -1,13 +1,14 @@
-// Gaps: the layer of blocks between walls that move and walls close by on which nodes slide, as over the tips of blades.
+// Gaps: the layer of blocks between walls that move and walls close by on which nodes slide, as over the tips of
+// blades.
 //
 //     case (slips)      =====================================
 //                          |       |  gap  |       |            gap layer: lines run from the tip's plane to the case
 //     plane of the tip  ---+-------#########-------+---
 //                          |       # blade #       |
 //
-// There is no room for a near field, and lines that cross the gap from side to side know nothing of the tip. So lines run across it:
-// the motion of the tip, and of the faces that continue its plane, goes on to the sliding wall, and what puts nodes back
-// on that is shared by all cells between alike.
+// There is no room for a near field, and lines that cross the gap from side to side know nothing of the tip. So lines
+// run across it: the motion of the tip, and of the faces that continue its plane, goes on to the sliding wall, and what
+// puts nodes back on that is shared by all cells between alike.
 #pragma once
 
 #include <gridmorph/boundary/links.hpp>
@@ -18,9 +19,9 @@
 
 namespace gridmorph {
 
-/// Per patch, whether it is a wall at a gap: it ranks as a wall (`kinds`), an explicit rule other than `fixed` moves it, all grid
-/// lines off it end on walls that slip, and are on average shorter than half the root of the area of all patches that the rule moves
-/// towards such walls. Looks at 81 lines of a patch at most.
+/// Per patch, whether it is a wall at a gap: it ranks as a wall (`kinds`), an explicit rule other than `fixed` moves
+/// it, all grid lines off it end on walls that slip, and are on average shorter than half the root of the area of all
+/// patches that the rule moves towards such walls. Looks at 81 lines of a patch at most.
 std::vector<char> gap_walls(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
                             std::vector<PatchKind> const& kinds);
 

@@ -9,7 +9,8 @@
 
 namespace gridmorph {
 
-/// Arc lengths between neighbouring nodes of grid lines: straight, or what a finer mesh has between them. Borrows the mesh.
+/// Arc lengths between neighbouring nodes of grid lines: straight, or what a finer mesh has between them. Borrows the
+/// mesh.
 class GridLengths {
  public:
   /// A node, for kernels::walk_line().

@@ -15,8 +15,8 @@ namespace gridmorph {
 class IndependentChains {
  public:
   IndependentChains(Topology const& topology, Known const& known) : topology_(topology), known_(known) {}
-  /// Takes the chain in; false, and nothing is taken, where what it would write depends on a chain before it. directed: its law differs
-  /// from one end to the other, so that lines are shared only from the same first end.
+  /// Takes the chain in; false, and nothing is taken, where what it would write depends on a chain before it. directed:
+  /// its law differs from one end to the other, so that lines are shared only from the same first end.
   bool add(Chain const& chain, bool directed = false);
 
  private:

@@ -153,8 +153,8 @@ void Lattice::identify(Mesh const& mesh, Links const& links) {
       copies_.push_back(copy);
     };
     reach({seed, {}, {}, false});
-    // Returns true when it came through a periodic interface to a copy not seen before: the plain neighbours of that copy
-    // come next, so that they share its transform to the bit.
+    // Returns true when it came through a periodic interface to a copy not seen before: the plain neighbours of that
+    // copy come next, so that they share its transform to the bit.
     auto expand = [&](EntityCopy const from, bool through_periodic) {
       auto it = std::lower_bound(on_link.begin(), on_link.end(), std::pair<int, int>{from.entity, -1});
       for (; it != on_link.end() && it->first == from.entity; ++it) {

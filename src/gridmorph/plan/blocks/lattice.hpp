@@ -1,7 +1,7 @@
 // The entities of the cut mesh (corners, edges, faces, volumes of its pieces) and which of them coincide.
 //
-// Along each axis of a zone, lattice position 2c is cut plane c and position 2c+1 the open interval between cut planes c
-// and c+1. An entity is a lattice triple; its dimension is the number of odd positions. The nodes of a zone are split
+// Along each axis of a zone, lattice position 2c is cut plane c and position 2c+1 the open interval between cut planes
+// c and c+1. An entity is a lattice triple; its dimension is the number of odd positions. The nodes of a zone are split
 // among its entities without overlap, so "one displacement per entity" is "one displacement per node".
 #pragma once
 

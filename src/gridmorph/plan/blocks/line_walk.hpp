@@ -12,8 +12,8 @@ struct LinePlace {
   int axis = 0, step = 1;
 };
 
-/// Goes on to the next node and adds the length of the cell edge between; false, and nothing changed, at the boundary. Links are
-/// as many as a zone has, looked at where its nodes end.
+/// Goes on to the next node and adds the length of the cell edge between; false, and nothing changed, at the boundary.
+/// Links are as many as a zone has, looked at where its nodes end.
 bool advance(Mesh const& mesh, Links const& links, LinePlace& place, double& length);
 
 /// The axis across a face range: the one along which it has one node.

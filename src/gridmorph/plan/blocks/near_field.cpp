@@ -68,8 +68,8 @@ std::set<int> walls_of(std::vector<NearField> const& fields) {
   return walls;
 }
 
-/// Cells of a near field where so many lie between its wall and a boundary; 0: none has room. The choice is not delicate: a wing
-/// that turns keeps its angles with any from a tenth to a half.
+/// Cells of a near field where so many lie between its wall and a boundary; 0: none has room. The choice is not
+/// delicate: a wing that turns keeps its angles with any from a tenth to a half.
 int layers_of(int cells_to_boundary) { return cells_to_boundary < 2 ? 0 : std::max(1, cells_to_boundary / 3); }
 
 std::string room_note(Mesh const& mesh, std::vector<NearField> const& fields, bool to_blocks,
@@ -167,8 +167,8 @@ std::vector<CutPlane> room_limits(Mesh const& mesh, Topology const& topology, st
     if (field.automatic) walls.insert(field.walls.begin(), field.walls.end());
   std::set<BlockFace> done;
   std::vector<CutPlane> planes;
-  std::map<int, int>
-      layers;  // of so many cells; what depends on these alone is the same for all walls that one sheet of cells lies on
+  std::map<int, int> layers;  // of so many cells; what depends on these alone is the same for all walls that one sheet
+                              // of cells lies on
   bool to_blocks = false;
   for (int c = 0; c < lattice.n_classes(); ++c) {
     if (!walls.contains(blocks.patch_of_face()[c])) continue;

@@ -1,4 +1,5 @@
-// What is found out before chains are put in order, and plans made on it: of the mesh itself, or of some of its grid lines.
+// What is found out before chains are put in order, and plans made on it: of the mesh itself, or of some of its grid
+// lines.
 #pragma once
 
 #include <gridmorph/plan/blocks/chain_laws.hpp>
@@ -28,17 +29,17 @@ struct PlanBasis {
 /// Borrows the mesh. Throws as make_plan() does.
 PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const& surface, PlanOptions const& options);
 
-/// The grid lines that tables are made of: a mesh with the zones, patches, pieces and blocks of the basis in the same order, and how
-/// long its edges are.
+/// The grid lines that tables are made of: a mesh with the zones, patches, pieces and blocks of the basis in the same
+/// order, and how long its edges are.
 struct PlanLines {
   Mesh const& mesh;
   Topology const& topology;
   GridLengths lengths;
 };
 
-/// The plan of these lines. What coordinates decide (kinds, near fields, ranks) is decided on the mesh of the basis, whose angles
-/// `priority` keeps; `first` as in make_plan(); `next`: gets what the stage after those could be, in the order of ranks; `choice`: of the
-/// chains of stages that are not given.
+/// The plan of these lines. What coordinates decide (kinds, near fields, ranks) is decided on the mesh of the basis,
+/// whose angles `priority` keeps; `first` as in make_plan(); `next`: gets what the stage after those could be, in the
+/// order of ranks; `choice`: of the chains of stages that are not given.
 PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines const& lines,
                         BoundaryMotion const& surface, PlanOptions const& options, ChainOrder const& first,
                         ChainOrder* next = nullptr, ChainChoice choice = ChainChoice::rules);

@@ -6,7 +6,8 @@
 namespace gridmorph {
 namespace {
 
-/// What walk_line() visits, one after another; a lambda would be a function for the host alone, which nvcc refuses there.
+/// What walk_line() visits, one after another; a lambda would be a function for the host alone, which nvcc refuses
+/// there.
 struct StoreAlong {
   double* first;
   KOKKOS_INLINE_FUNCTION void operator()(int position, double t) const { first[position] = t; }
@@ -64,8 +65,8 @@ std::vector<kernels::Junction> known_around(Topology const& topology, ChainLayou
   return junctions;
 }
 
-/// Lengths of the edges of a cross-section of the chain (s = first or last node) along a (direction 0) or b, each at the node where it
-/// ends: (n_b, n_a).
+/// Lengths of the edges of a cross-section of the chain (s = first or last node) along a (direction 0) or b, each at
+/// the node where it ends: (n_b, n_a).
 std::vector<double> section_edges(PlanContext const& context, ChainLayout const& layout, int side, int direction) {
   std::vector<double> edges(std::size_t(layout.n_nodes[1]) * layout.n_nodes[2], 0);
   int const ps = side == 0 ? 0 : layout.n[0] - 1;

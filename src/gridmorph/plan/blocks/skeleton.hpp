@@ -1,5 +1,5 @@
-// The skeleton: all nodes on faces, edges and corners of pieces, and all in regions that rules move. It carries the displacement
-// from stage to stage; the nodes inside other pieces depend on nothing but the skeleton.
+// The skeleton: all nodes on faces, edges and corners of pieces, and all in regions that rules move. It carries the
+// displacement from stage to stage; the nodes inside other pieces depend on nothing but the skeleton.
 //
 // Every entity class has its slots, in the order of its owner's nodes and in its owner's frame, so that nodes that
 // coincide share one displacement.
@@ -26,7 +26,8 @@ class RotationTable {
 
 bool same_rotation(Mat3 const& a, Mat3 const& b);
 
-/// The nodes of one entity as rows, of a volume those of one of its layers: node (p, q) has slot + p + slot_q * q and zone index at + p * step_p + q * step_q.
+/// The nodes of one entity as rows, of a volume those of one of its layers: node (p, q) has slot + p + slot_q * q and
+/// zone index at + p * step_p + q * step_q.
 struct SkeletonRows {
   int n_p = 1, n_q = 1;
   Index slot = 0, slot_q = 0;

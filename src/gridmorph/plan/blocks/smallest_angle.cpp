@@ -12,8 +12,8 @@
 namespace gridmorph {
 namespace {
 
-/// Unit vectors along one row of nodes, zero where there is no edge or one of no length. The angle between such an edge and
-/// another then counts as 90 degrees, which is more than the smallest angle of any face.
+/// Unit vectors along one row of nodes, zero where there is no edge or one of no length. The angle between such an edge
+/// and another then counts as 90 degrees, which is more than the smallest angle of any face.
 class Row {
  public:
   explicit Row(int n) : n_(std::size_t(n)), values_(3 * n_) {}

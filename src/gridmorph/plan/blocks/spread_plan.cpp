@@ -223,8 +223,9 @@ std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion 
   return lists;
 }
 
-/// What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. So the passes of curved
-/// surfaces are swept there and back: each sweep leaves a small share of the disturbance of the one before.
+/// What a curved surface asks for, spread along lines on another curved surface, takes their nodes off it. So the
+/// passes of curved surfaces are swept there and back: each sweep leaves a small share of the disturbance of the one
+/// before.
 void sweep_again(std::vector<RuleChains>& lists) {
   constexpr int sweeps = 2;
   auto const first_curved = std::find_if(lists.begin(), lists.end(), [](RuleChains const& l) { return l.curved; });
@@ -277,7 +278,8 @@ void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std:
           now.push_back(std::move(entry.chain));
         else
           later.push_back(std::move(entry));
-      // Zero slope at both ends keeps the first spacings at end walls; across a gap all cells share what it opens or closes by.
+      // Zero slope at both ends keeps the first spacings at end walls; across a gap all cells share what it opens or
+      // closes by.
       kernels::LineLaw const law = across_gap ? kernels::LineLaw::linear : kernels::LineLaw::c1;
       SpreadPass pass = build_spread(context, now, law, surface_so_far, given, plan);
       std::map<std::pair<std::string, std::string>, int> ends;

@@ -12,9 +12,10 @@ std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& mo
 
 /// Fills plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to
 /// the opposite boundary, or as far as the chains of its rule stay side by side: what leaves the chains sideways into
-/// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other rules
-/// have passes of their own, in their order. Chains across gaps (gaps.hpp) end at the plane of the tip and share the correction
-/// evenly, law linear; those from elsewhere end before a gap layer. `given`: entities whose displacement the motion rules give.
+/// other blocks must not move. Rules whose chains are the same from end to end (hub and case) share one pass; other
+/// rules have passes of their own, in their order. Chains across gaps (gaps.hpp) end at the plane of the tip and share
+/// the correction evenly, law linear; those from elsewhere end before a gap layer. `given`: entities whose displacement
+/// the motion rules give.
 void plan_spreads(PlanContext const& context, ResolvedMotion const& motion, std::vector<int> const& surface_of_patch,
                   Known const& given, Gaps const& gaps, Plan& plan);
 

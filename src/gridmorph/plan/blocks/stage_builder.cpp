@@ -143,8 +143,8 @@ Origin origin_of(Chain const& chain, bool open_end, std::vector<std::string> con
   return open_end ? first : better_of(first, {chain.last.kind, chain.last.patches}, kind_order);
 }
 
-/// Which ends carry a rotation, and how it fades: a near field turns with its wall, other chains where an end of theirs does.
-/// Returns whose rotation the chain carries, where all of it is one body's.
+/// Which ends carry a rotation, and how it fades: a near field turns with its wall, other chains where an end of theirs
+/// does. Returns whose rotation the chain carries, where all of it is one body's.
 int set_turn(PlanContext const& context, Chain const& chain, ChainLayout const& layout, StageChain const& entry,
              Known const& known, kernels::Chain& device) {
   bool const near_field = entry.turn == kernels::TurnLaw::near_field;
@@ -296,7 +296,8 @@ double given_tolerance(std::vector<int> const& surfaces, Plan const& plan) {
 
 }  // namespace
 
-/// A surface fitted to nodes that scatter is tilted by their scatter over its size: a displacement along the true one leaves it by as much.
+/// A surface fitted to nodes that scatter is tilted by their scatter over its size: a displacement along the true one
+/// leaves it by as much.
 double given_tolerance(SlipSurface const& surface, double mesh_size) {
   return std::max(1e-10 * mesh_size, std::min(2 * surface.baseline_deviation, 1e-6 * surface.size));
 }

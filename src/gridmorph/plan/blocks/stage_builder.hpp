@@ -35,17 +35,18 @@ struct StageChain {
 Stage build_stage(PlanContext const& context, std::vector<StageChain> const& chains, Known& known,
                   std::vector<std::string> const& kind_order);
 
-/// How far given displacements may take nodes off a surface before they are put back: 1e-10 of the mesh size, or twice as far as nodes of the
-/// baseline scatter about it, up to 1e-6 of its size.
+/// How far given displacements may take nodes off a surface before they are put back: 1e-10 of the mesh size, or twice
+/// as far as nodes of the baseline scatter about it, up to 1e-6 of its size.
 double given_tolerance(SlipSurface const& surface, double mesh_size);
 
-/// Redistribution chains, all with one law: every entity of the chains is written once, known or not. `given` are the entities whose
-/// displacement the motion rules give: they are honoured exactly while they stay within given_tolerance() of their slip surfaces, and trimmed
-/// to them beyond that. Uses mesh_size and surfaces of `plan`.
+/// Redistribution chains, all with one law: every entity of the chains is written once, known or not. `given` are the
+/// entities whose displacement the motion rules give: they are honoured exactly while they stay within
+/// given_tolerance() of their slip surfaces, and trimmed to them beyond that. Uses mesh_size and surfaces of `plan`.
 SpreadPass build_spread(PlanContext const& context, std::vector<Chain> const& chains, kernels::LineLaw law,
                         std::vector<int> const& surface_of_patch, Known const& given, Plan const& plan);
 
-/// Position of a kind in the priority's order, negative for patches that it names; kinds that are not listed come after all that are.
+/// Position of a kind in the priority's order, negative for patches that it names; kinds that are not listed come after
+/// all that are.
 int kind_rank(EndKind kind, std::vector<std::string> const& order);
 
 }  // namespace gridmorph

@@ -9,8 +9,8 @@
 namespace gridmorph {
 namespace {
 
-/// Calls visit(position (s, a, b) on the chain, its place in the chain's frame) for the nodes of a piece from `first` to `last`
-/// along each axis of the chain.
+/// Calls visit(position (s, a, b) on the chain, its place in the chain's frame) for the nodes of a piece from `first`
+/// to `last` along each axis of the chain.
 template <class Visit>
 void for_nodes(PlanContext const& context, PlacedBox const& box, PieceNodes const& piece, Index3 const& first,
                Index3 const& last, Visit const& visit) {
@@ -55,7 +55,8 @@ struct Step {
   }
 };
 
-/// Steps along a line from its wall node to the first node that is no nearer than `least`, or to the last one but one of its segment.
+/// Steps along a line from its wall node to the first node that is no nearer than `least`, or to the last one but one
+/// of its segment.
 int steps_to_resolved(kernels::Segment const& segment, Index node, kernels::Field<double const> const& x,
                       double least) {
   int steps = 1;

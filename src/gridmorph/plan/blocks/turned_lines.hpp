@@ -5,7 +5,8 @@
 
 namespace gridmorph {
 
-/// Positions of the ends and known sides of chain `number` of a stage, in the chain's frame. Its ends turn about themselves.
+/// Positions of the ends and known sides of chain `number` of a stage, in the chain's frame. Its ends turn about
+/// themselves.
 void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
                         Stage& stage);
 

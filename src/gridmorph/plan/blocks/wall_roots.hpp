@@ -1,4 +1,5 @@
-// The walls whose near fields turn, node by node: who stands beside whom, and which end walls are near (kernels/root_turn.hpp).
+// The walls whose near fields turn, node by node: who stands beside whom, and which end walls are near
+// (kernels/root_turn.hpp).
 #pragma once
 
 #include <gridmorph/boundary/links.hpp>
@@ -44,7 +45,8 @@ struct RootNode {
   int n_lines = 0;       ///< directions in which lines leave it
 };
 
-/// Adds to each corner of each cell of a face its neighbours there; `number(slot)` is its place in `nodes`, -1: not wanted.
+/// Adds to each corner of each cell of a face its neighbours there; `number(slot)` is its place in `nodes`, -1: not
+/// wanted.
 template <class Number>
 void add_neighbours(PlanContext const& context, RootFace const& face, Number const& number,
                     std::vector<RootNode>& nodes);
@@ -66,8 +68,9 @@ class WallRoots {
   void add_walls(std::vector<int> const& patches, double turn);
   /// Nodes at one place turn alike: those of edges that have no length. Call after all walls.
   void join_coincident();
-  /// Nodes beside which others are nearer than `roundings` times what coordinates resolve on the walls turn as the nearest node along the
-  /// walls that has none so near: what is between them is no direction. Call after find_bodies(). Cost O(n), and O(n log n) in such nodes.
+  /// Nodes beside which others are nearer than `roundings` times what coordinates resolve on the walls turn as the
+  /// nearest node along the walls that has none so near: what is between them is no direction. Call after
+  /// find_bodies(). Cost O(n), and O(n log n) in such nodes.
   void turn_as_resolved(CoordinatePrecision const& precision, double roundings);
   /// How long an edge has to be to have a direction, since that call; 0 before.
   [[nodiscard]] double resolved_arm() const { return resolved_arm_; }
@@ -109,7 +112,8 @@ class WallRoots {
   }
 
  private:
-  /// visit(face, its record there, node of the mesh) for all nodes of all walls, those on borders of faces once for each.
+  /// visit(face, its record there, node of the mesh) for all nodes of all walls, those on borders of faces once for
+  /// each.
   template <class Visit>
   void for_nodes(Visit const& visit) const;
   /// Of the nodes of all walls.

@@ -42,7 +42,8 @@ class LatticeMesh {
       for (int j = 0; j < lattice_.slabs(1); ++j)
         for (int i = 0; i < lattice_.slabs(0); ++i) f(Index3{i, j, k});
   }
-  /// Whether nodes slide on a side or go along: also where the wrap reaches one that stands, for the reason that Wrap::slides() has.
+  /// Whether nodes slide on a side or go along: also where the wrap reaches one that stands, for the reason that
+  /// Wrap::slides() has.
   [[nodiscard]] bool moves_along(int axis, int side) const {
     auto const a = std::size_t(axis), which = std::size_t(side);
     auto const is = wrap_.domain.side[a][which];

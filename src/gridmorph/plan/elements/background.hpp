@@ -1,5 +1,5 @@
-// The background mesh: a structured multi-block mesh between the wrap and an outer box, which carries the displacement of the
-// wrap out to the far field.
+// The background mesh: a structured multi-block mesh between the wrap and an outer box, which carries the displacement
+// of the wrap out to the far field.
 //
 // It is planned and morphed by the structured engine as any other mesh:
 //
@@ -23,7 +23,8 @@
 
 namespace gridmorph {
 
-/// The tensor grid that a background made of lattice cells is cut from: where the cell that holds a point is found by bisection.
+/// The tensor grid that a background made of lattice cells is cut from: where the cell that holds a point is found by
+/// bisection.
 struct FineLattice {
   Chart chart;                                ///< planes are in its coordinates
   std::array<std::vector<double>, 3> planes;  ///< of nodes
@@ -49,18 +50,20 @@ struct Background {
   std::vector<std::string> wrap = std::vector<std::string>(1, "wrap"), outer = std::vector<std::string>(1, "outer");
 };
 
-/// Around a tube: an O-type mesh, four blocks around the tube and nine beyond each of its ends (a butterfly in front of the flat
-/// end); throws MeshError where this would turn cells inside out. Else the cells of the wrap's lattice outside the wrap, each `cells` cells wide where there are walls; from there cells grow by
-/// `growth` each out to the outer box. Slabs of coarse cells that look alike are joined, so a wrap that is a box gives 26
-/// zones. Nodes are where the chart of the wrap has them, and the sides that end with the mesh are what ChartedDomain::side says: slip
-/// surfaces are planes, surfaces of revolution, or the side itself. Cost: linear in nodes.
+/// Around a tube: an O-type mesh, four blocks around the tube and nine beyond each of its ends (a butterfly in front of
+/// the flat end); throws MeshError where this would turn cells inside out. Else the cells of the wrap's lattice outside
+/// the wrap, each `cells` cells wide where there are walls; from there cells grow by `growth` each out to the outer
+/// box. Slabs of coarse cells that look alike are joined, so a wrap that is a box gives 26 zones. Nodes are where the
+/// chart of the wrap has them, and the sides that end with the mesh are what ChartedDomain::side says: slip surfaces
+/// are planes, surfaces of revolution, or the side itself. Cost: linear in nodes.
 Background make_background(Wrap const& wrap, int cells = 4, double growth = 1.4);
 
-/// A mesh of the user's (or of any other generator); all of its patches that no selector names slip, stay or move as the
-/// structured engine's defaults say. Throws MotionError for selectors that name nothing.
+/// A mesh of the user's (or of any other generator); all of its patches that no selector names slip, stay or move as
+/// the structured engine's defaults say. Throws MotionError for selectors that name nothing.
 Background make_background(Mesh mesh, std::vector<std::string> wrap, std::vector<std::string> outer);
 
-/// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free, Background::sides as they say.
+/// The plan of a background: displacements given on the wrap, zero on the outer patches, 2-D sides free,
+/// Background::sides as they say.
 PreparedMorph prepare_background(HostInstance const& host, Background const& background,
                                  VolumeOptions const& volume = {});
 
@@ -78,9 +81,9 @@ struct FarRows {
   double largest_distance = 0;  ///< of theirs
 };
 
-/// Trilinear weights in chart coordinates, in the lattice cell that holds each point (bilinear in 2-D, where z is not looked at); nodes of weight
-/// zero are left out. Row n is for nodes[n], which is its target. Linear cost, but for points
-/// in the wrap, each of which looks at all zones.
+/// Trilinear weights in chart coordinates, in the lattice cell that holds each point (bilinear in 2-D, where z is not
+/// looked at); nodes of weight zero are left out. Row n is for nodes[n], which is its target. Linear cost, but for
+/// points in the wrap, each of which looks at all zones.
 FarRows lattice_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
                      std::span<Index32 const> nodes);
 

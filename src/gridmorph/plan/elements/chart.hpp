@@ -1,20 +1,21 @@
 // Coordinates in which the domain of a mesh is a box, or nearly: what wrap and background mesh are made in.
 //
-// Three coordinates in a frame: straight (x, y, z); cylindrical about an axis (along it, radius, and angle times a mean radius); or those
-// of a disc of radius R about an axis, which becomes the square around it by the elliptical map (M. Fong, Analytical methods for
-// squaring the disc, 2014: no pole; only the four corners are singular),
+// Three coordinates in a frame: straight (x, y, z); cylindrical about an axis (along it, radius, and angle times a mean
+// radius); or those of a disc of radius R about an axis, which becomes the square around it by the elliptical map (M.
+// Fong, Analytical methods for squaring the disc, 2014: no pole; only the four corners are singular),
 //
 //     x = u sqrt(1 - v^2 / 2),   y = v sqrt(1 - u^2 / 2),   (x, y) = place / R, |u|, |v| <= 1,
 //
 // and along the axis.
 //
-// Where the domain ends on surfaces rather than planes in such a frame, a coordinate q becomes its share of the way between them,
+// Where the domain ends on surfaces rather than planes in such a frame, a coordinate q becomes its share of the way
+// between them,
 //
 //     q' = width (q - low(p)) / (high(p) - low(p)),
 //
-// p being the chart coordinates before it: radius between hub and case over the axial position, pitch between the sides of a passage
-// over axial position and span. low and high are tables, linear between their knots, so both ways are explicit and undo one another
-// to round-off. All coordinates are lengths, true ones where the walls are.
+// p being the chart coordinates before it: radius between hub and case over the axial position, pitch between the sides
+// of a passage over axial position and span. low and high are tables, linear between their knots, so both ways are
+// explicit and undo one another to round-off. All coordinates are lengths, true ones where the walls are.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>

@@ -17,7 +17,8 @@ struct Front {
   std::size_t face;  ///< number in the list of wall faces
 };
 
-/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges. Zero where those of a wall inside a zone cancel.
+/// (n_nodes) Sums of the faces' area vectors at wall nodes; in 2-D of their edges. Zero where those of a wall inside a
+/// zone cancel.
 std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                   std::vector<Index32> const& faces) {
   std::vector<Vec3> out(std::size_t(mesh.n_nodes()));

@@ -17,8 +17,8 @@ class FacetDistance {
   FacetDistance(Coordinates const& coordinates, CsrGraph const& faces);
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
-  /// Infinite where there are no faces. start: any number from an earlier call, left for the next; the closer its place was, the faster: about
-  /// O(log faces) where places follow one another.
+  /// Infinite where there are no faces. start: any number from an earlier call, left for the next; the closer its place
+  /// was, the faster: about O(log faces) where places follow one another.
   [[nodiscard]] double operator()(Vec3 const& p, int& start) const;
 
  private:

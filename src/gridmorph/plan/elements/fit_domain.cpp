@@ -114,8 +114,9 @@ class Boundary {
     return chart;
   }
 
-  /// A disc across coordinate axis `along`: the circle through what lies farthest from its centre, which begins in the middle of the mesh's box. In the two
-  /// coordinates after `along` the centre may lie at an end of the mesh (-1, 1: of half a disc) instead. Nothing where the mesh reaches beyond the circle.
+  /// A disc across coordinate axis `along`: the circle through what lies farthest from its centre, which begins in the
+  /// middle of the mesh's box. In the two coordinates after `along` the centre may lie at an end of the mesh (-1, 1: of
+  /// half a disc) instead. Nothing where the mesh reaches beyond the circle.
   [[nodiscard]] std::optional<Chart> disc(std::size_t along, std::array<int, 2> const& end) const {
     Chart chart;
     std::vector<Point> const q = places(chart);
@@ -136,7 +137,8 @@ class Boundary {
       return r;
     };
     for (double const from : {0.8, 0.9, 0.97, 0.99}) {
-      // Least squares of x^2 + y^2 - 2 a x - 2 b y - c (I. Kasa, 1976), about the mean; one unknown where the other is at an end.
+      // Least squares of x^2 + y^2 - 2 a x - 2 b y - c (I. Kasa, 1976), about the mean; one unknown where the other is
+      // at an end.
       double const least = from * (radius > 0 ? radius : farthest());
       double count = 0, mx = 0, my = 0, xx = 0, xy = 0, yy = 0, xr = 0, yr = 0, mr = 0;
       for (int const pass : {0, 1})
@@ -304,8 +306,8 @@ class Boundary {
       }
   }
 
-  /// Leaves out knots between which there is much less room than usual, which are where an end of the mesh that is no plane cuts
-  /// the sides off; false where these are more than a few.
+  /// Leaves out knots between which there is much less room than usual, which are where an end of the mesh that is no
+  /// plane cuts the sides off; false where these are more than a few.
   static bool widen(Chart::Limits& limits) {
     std::vector<double> widths;
     for (std::size_t n = 0; n < limits.low.size(); ++n) widths.push_back(limits.high[n] - limits.low[n]);
@@ -323,8 +325,9 @@ class Boundary {
     return double(narrow) <= 0.04 * double(widths.size());
   }
 
-  /// Knots beside which the boundary is not take the mean of their neighbours'; whether there were any to begin with. A knot is filled once, also
-  /// with a mean that leaves no room between its ends (the ends of a folded mesh may differ by round-off alone): so each round fills some.
+  /// Knots beside which the boundary is not take the mean of their neighbours'; whether there were any to begin with. A
+  /// knot is filled once, also with a mean that leaves no room between its ends (the ends of a folded mesh may differ
+  /// by round-off alone): so each round fills some.
   static bool fill(Chart::Limits& limits) {
     auto const size = limits.low.size();
     std::vector<std::uint8_t> known(size);

@@ -47,8 +47,8 @@ void fill_weights(Mesh const& mesh, Location const& where, std::vector<double>& 
   std::copy_n(w.of, corners.size(), weight.begin());
 }
 
-/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once (collapsed elements name
-/// some more than once); these weights sum to one.
+/// Calls visit(node, weight) for the corner nodes of a place whose weights count, each node once (collapsed elements
+/// name some more than once); these weights sum to one.
 template <class Visit>
 void for_each_item(Mesh const& mesh, Location const& where, Visit const& visit) {
   constexpr double negligible = 1e-9;

@@ -23,8 +23,8 @@ KOKKOS_INLINE_FUNCTION kernels::ElementCorners corners_at(LocatorTables<MemorySp
   return c;
 }
 
-/// Calls visit(part, corners) for the tetrahedra of a polyhedron until it says true: mean of the nodes, mean of the face, and
-/// the two ends of an edge.
+/// Calls visit(part, corners) for the tetrahedra of a polyhedron until it says true: mean of the nodes, mean of the
+/// face, and the two ends of an edge.
 template <class MemorySpace, class Visit>
 KOKKOS_INLINE_FUNCTION void for_each_part(LocatorTables<MemorySpace> const& t, Index32 element, Visit const& visit) {
   kernels::ElementCorners c;
@@ -74,8 +74,8 @@ struct NearestPlace {
   Vec3 towards;
 };
 
-/// Of an element that does not contain the point; no element when that is further than `limit`. `towards`: from the point to the
-/// best place so far.
+/// Of an element that does not contain the point; no element when that is further than `limit`. `towards`: from the
+/// point to the best place so far.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION NearestPlace nearest(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
                                             Vec3 const& towards, double limit) {
@@ -104,13 +104,13 @@ KOKKOS_INLINE_FUNCTION NearestPlace nearest(LocatorTables<MemorySpace> const& t,
   return best;
 }
 
-/// Distances that differ by round-off are the same: then the direction decides, so that the choice does not depend on numbers
-/// (a point on the axis of a round wall has many nearest places), and where that is the same, the number.
+/// Distances that differ by round-off are the same: then the direction decides, so that the choice does not depend on
+/// numbers (a point on the axis of a round wall has many nearest places), and where that is the same, the number.
 KOKKOS_INLINE_FUNCTION bool is_nearer(NearestPlace const& a, NearestPlace const& b) {
   float const da = float(a.place.distance), db = float(b.place.distance);
   if (da != db) return da < db;
-  // In whole steps: comparing with a tolerance would depend on the order of comparisons. Shifted, since components that are 0, 1
-  // or 1/2 are common.
+  // In whole steps: comparing with a tolerance would depend on the order of comparisons. Shifted, since components that
+  // are 0, 1 or 1/2 are common.
   auto const step = [&](double component) {
     return da > 0 ? std::int64_t((component / double(da) + 2) * 1e6 + 0.37) : 0;
   };

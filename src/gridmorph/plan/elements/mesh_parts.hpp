@@ -10,12 +10,14 @@
 
 namespace gridmorph::detail {
 
-/// (n_nodes) The number of the part that a node belongs to, -1 where no element has it. Elements that share a node hang together, and so do nodes at one
-/// place and those that a connection pairs, periodic ones too. `cuts`: (n_nodes) nodes at one place, by the one that carries them, that do not
-/// join the zones on their two sides; empty: none. Parts are counted in the order of their first nodes. Cost O(corners of all elements).
+/// (n_nodes) The number of the part that a node belongs to, -1 where no element has it. Elements that share a node hang
+/// together, and so do nodes at one place and those that a connection pairs, periodic ones too. `cuts`: (n_nodes) nodes
+/// at one place, by the one that carries them, that do not join the zones on their two sides; empty: none. Parts are
+/// counted in the order of their first nodes. Cost O(corners of all elements).
 std::vector<Index32> parts_of_nodes(Mesh const& mesh, NodeGraph const& graph, std::vector<std::uint8_t> const& cuts);
 
-/// Some nodes of a mesh, with all elements that have them, as a mesh of its own: zones and patches keep their numbers, nodes and elements their order.
+/// Some nodes of a mesh, with all elements that have them, as a mesh of its own: zones and patches keep their numbers,
+/// nodes and elements their order.
 struct MeshPart {
   Mesh mesh;
   std::vector<Index32> nodes, elements;  ///< of the part -> of the mesh, ascending

@@ -82,7 +82,8 @@ class MiddleRows {
     }
   }
 
-  /// G c = sum over the corners p of (g . (p - p0)) u_p, with (sum of (p - p0)(p - p0)^T) g = c; only along what the corners span.
+  /// G c = sum over the corners p of (g . (p - p0)) u_p, with (sum of (p - p0)(p - p0)^T) g = c; only along what the
+  /// corners span.
   void add_gradient(std::span<Use const> uses, Vec3 const& c) {
     Coordinates const& x = mesh_.coordinates;
     around_.clear();

@@ -11,8 +11,9 @@ namespace {
 
 Vec3 between(Vec3 const& a, Vec3 const& b, double t) { return a + t * (b - a); }
 
-/// The mesh has one pattern in all sheets across the tube: a square core, rings around it as far as the tube, rings from there
-/// to the box. Its points are numbered once; a node is (sheet, point), so blocks that share nodes are found by number.
+/// The mesh has one pattern in all sheets across the tube: a square core, rings around it as far as the tube, rings
+/// from there to the box. Its points are numbered once; a node is (sheet, point), so blocks that share nodes are found
+/// by number.
 class OTypeMesh {
  public:
   OTypeMesh(Tube const& tube, std::array<std::vector<double>, 3> const& box, double growth)
@@ -83,7 +84,8 @@ class OTypeMesh {
     return side == 0 ? along(c, axis_) - low_[axis_] : high_[axis_] - along(c, axis_);
   }
 
-  // ---- positions -------------------------------------------------------------------------------------------------------
+  // ---- positions
+  // -------------------------------------------------------------------------------------------------------
 
   static double along(Vec3 const& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -166,8 +168,8 @@ class OTypeMesh {
     return {between(tube_.centre[std::size_t(j)], tube_.centre[std::size_t(j) + 1], t),
             between(tube_.point(j, k), tube_.point(j + 1, k), t), between(side_point(j, k), side_point(j + 1, k), t)};
   }
-  /// The tube's ring goes on along its axis and widens towards a ring in the middle of the end face, by no more than it is
-  /// far away: in front of an end close to the box lines would lie down otherwise.
+  /// The tube's ring goes on along its axis and widens towards a ring in the middle of the end face, by no more than it
+  /// is far away: in front of an end close to the box lines would lie down otherwise.
   [[nodiscard]] Vec3 end_ring(Frame const& section, Vec3 const& middle, Vec3 const& corner) const {
     Vec3 const ahead = section.ring - section.centre;
     Vec3 const across = ahead - (along(ahead, axis_) / along(tube_.axis, axis_)) * tube_.axis;
@@ -198,7 +200,8 @@ class OTypeMesh {
     return between(core_point(sheet, i, j), f.ring, r);
   }
 
-  // ---- numbers ---------------------------------------------------------------------------------------------------------
+  // ---- numbers
+  // ---------------------------------------------------------------------------------------------------------
 
   /// Place in the core of point k of its perimeter.
   [[nodiscard]] std::pair<int, int> core_perimeter(int k) const {
@@ -257,7 +260,8 @@ class OTypeMesh {
     zones_.push_back(std::move(zone));
   }
 
-  // ---- faces -----------------------------------------------------------------------------------------------------------
+  // ---- faces
+  // -----------------------------------------------------------------------------------------------------------
 
   struct Face {
     int zone = 0, axis = 0, side = 0;

@@ -14,7 +14,8 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// Of surfaces inside the mesh one side, neighbours the same one, whatever the numbers of their faces: 1 for faces of the other.
+/// Of surfaces inside the mesh one side, neighbours the same one, whatever the numbers of their faces: 1 for faces of
+/// the other.
 std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTopology const& topology,
                                                std::vector<Index32> const& faces) {
   auto const& behind = topology.boundary.behind;
@@ -59,8 +60,9 @@ std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTop
   return back;
 }
 
-/// The faces without the backs of surfaces inside the mesh, and without those that have the nodes of another in a zone before theirs: the other side of a wall between zones, whose normal is the opposite. Were
-/// it left to places, which are the same, normals of either zone would cancel around a node.
+/// The faces without the backs of surfaces inside the mesh, and without those that have the nodes of another in a zone
+/// before theirs: the other side of a wall between zones, whose normal is the opposite. Were it left to places, which
+/// are the same, normals of either zone would cancel around a node.
 std::vector<Index32> one_sided(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                std::vector<Index32> const& all_faces) {
   std::vector<Index32> faces = all_faces;

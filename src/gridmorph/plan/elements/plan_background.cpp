@@ -79,7 +79,8 @@ void UnstructuredPlanner::plan_projections() {
   UnstructuredPlan& plan = out_.plan;
   if (!plan.background) return;
   project_wrap();
-  // Beyond the wrap the background mesh has the say, on partially wrapped elements too: layers went there only to surround the wrap's nodes.
+  // Beyond the wrap the background mesh has the say, on partially wrapped elements too: layers went there only to
+  // surround the wrap's nodes.
   Mask column = drives_;
   for (Index32 const n : columns_.node) column[std::size_t(n)] = 1;
   std::vector<Index32> far;

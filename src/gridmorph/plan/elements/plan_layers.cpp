@@ -105,7 +105,8 @@ std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
 }
 
 void UnstructuredPlanner::plan_layer_turns() {
-  // Where turns are carried far, nodes between walls that turn differently are pulled apart; where they end at once, the first elements beyond the columns shear.
+  // Where turns are carried far, nodes between walls that turn differently are pulled apart; where they end at once,
+  // the first elements beyond the columns shear.
   constexpr double reach_by_offset = 0.1;
   InterpolationOperator const& rows = out_.plan.near.rows;
   double const reach = reach_by_offset * (out_.report.offset > 0 ? out_.report.offset : out_.report.layer_height);

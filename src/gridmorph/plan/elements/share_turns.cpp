@@ -1,4 +1,5 @@
-// What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings of plane meshes by what it sees.
+// What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings of plane meshes
+// by what it sees.
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
 #include <gridmorph/plan/elements/surroundings.hpp>

@@ -1,4 +1,5 @@
-// What a place near a body of a plane mesh sees of the walls around it: how close they are on all sides, not only where they are nearest.
+// What a place near a body of a plane mesh sees of the walls around it: how close they are on all sides, not only where
+// they are nearest.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -13,11 +14,14 @@ namespace gridmorph {
 ///
 ///   C(x) = integral along the wall of ds / |y - x|^2
 ///
-/// which beside a straight wall is pi / d and around corners follows what is in sight: an edge at height h fills the angle h ds / r^2. C d / pi, d the exact distance
-/// from the wall, is kept on a lattice around the body, fine beside it and growing outwards, and linear between its nodes; so C is singular where it should be, and
-/// continuous in the place and in the walls: edges are deposited with bilinear weights on lattices of 0.05 of the body's size, and of twice as much each time they are twice as far from it.
+/// which beside a straight wall is pi / d and around corners follows what is in sight: an edge at height h fills the
+/// angle h ds / r^2. C d / pi, d the exact distance from the wall, is kept on a lattice around the body, fine beside it
+/// and growing outwards, and linear between its nodes; so C is singular where it should be, and continuous in the place
+/// and in the walls: edges are deposited with bilinear weights on lattices of 0.05 of the body's size, and of twice as
+/// much each time they are twice as far from it.
 ///
-/// Cost: sources (about a thousand) times nodes of the lattice (12 thousand), 10 flops each, on all cores; 8 bytes per node and wall.
+/// Cost: sources (about a thousand) times nodes of the lattice (12 thousand), 10 flops each, on all cores; 8 bytes per
+/// node and wall.
 class Surroundings {
  public:
   /// How far the lattice reaches beyond the centre of the body, in sizes of it.

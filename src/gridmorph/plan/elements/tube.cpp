@@ -304,8 +304,8 @@ class Fitter {
       }
   }
 
-  /// Radii of the ring's corners, so that its sides enclose the hull with its offset: the largest radius of the hull up to
-  /// the neighbours on both sides, over the cosine of half a step.
+  /// Radii of the ring's corners, so that its sides enclose the hull with its offset: the largest radius of the hull up
+  /// to the neighbours on both sides, over the cosine of half a step.
   static void set_radii(double const* support, std::array<double, directions> const& shift, double* radius) {
     std::array<double, directions> hull{};
     for (std::size_t m = 0; m < directions; ++m) {

@@ -1,5 +1,5 @@
-// A tube: convex sections strung along a straight axis, their centres on a line that need not be straight. The simplest wrap of
-// a wing, a blade, a rope.
+// A tube: convex sections strung along a straight axis, their centres on a line that need not be straight. The simplest
+// wrap of a wing, a blade, a rope.
 #pragma once
 
 #include <gridmorph/mesh/unstructured_mesh.hpp>
@@ -13,8 +13,8 @@
 
 namespace gridmorph {
 
-/// Sections lie in planes across the axis. Between two of them the tube is ruled: the points of their rings are joined by
-/// straight lines, neighbouring lines by bilinear faces. Both ends are flat.
+/// Sections lie in planes across the axis. Between two of them the tube is ruled: the points of their rings are joined
+/// by straight lines, neighbouring lines by bilinear faces. Both ends are flat.
 struct Tube {
   int box_axis = 2;  ///< coordinate axis nearest to the tube's
   Vec3 u, v, axis;   ///< right-handed, orthonormal; u near coordinate axis box_axis + 1
@@ -37,10 +37,10 @@ struct Tube {
   [[nodiscard]] bool meets(LatticeBox const& box) const;
 };
 
-/// Fits a tube around walls: along their principal axis, sections with the convex hull of the walls near them, made larger by
-/// the offset and smooth along the axis. Hollows and details of the sections go; all wall nodes are inside. Nothing, and the
-/// reason in `note`, where the walls are less than 1.25 times as long as wide or leave gaps along their axis.
-/// Linear cost.
+/// Fits a tube around walls: along their principal axis, sections with the convex hull of the walls near them, made
+/// larger by the offset and smooth along the axis. Hollows and details of the sections go; all wall nodes are inside.
+/// Nothing, and the reason in `note`, where the walls are less than 1.25 times as long as wide or leave gaps along
+/// their axis. Linear cost.
 std::optional<Tube> fit_tube(Mesh const& mesh, std::span<CsrGraph const> walls, double offset, std::string& note);
 
 }  // namespace gridmorph

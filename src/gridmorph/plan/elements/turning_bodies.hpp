@@ -13,8 +13,8 @@ struct WallBody {
   std::vector<Index32> faces;  ///< in UnstructuredTopology::boundary
   std::vector<Index32> nodes;  ///< representatives, ascending
   Vec3 axis;                   ///< unit: the only one about which it may turn; zero: any
-  /// Whether it ends on boundaries that could not turn with it: given ones, periodic ones, slip surfaces that are no planes or planes in two
-  /// directions, free ones.
+  /// Whether it ends on boundaries that could not turn with it: given ones, periodic ones, slip surfaces that are no
+  /// planes or planes in two directions, free ones.
   bool attached = false;
 };
 
@@ -31,7 +31,8 @@ struct WallBodies {
   RestingFaces resting;
 };
 
-/// driving_faces: those of moving walls. plane_normal: of a 2-D mesh, about which everything turns there. Serial, linear.
+/// driving_faces: those of moving walls. plane_normal: of a 2-D mesh, about which everything turns there. Serial,
+/// linear.
 WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topology,
                             BoundaryFacePatches const& face_patches, NodeGraph const& graph,
                             BoundaryConditions const& boundary, std::vector<Index32> const& driving_faces,

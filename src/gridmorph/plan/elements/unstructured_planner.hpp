@@ -1,5 +1,6 @@
-// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then plan_columns.cpp, plan_turns.cpp,
-// share_turns.cpp, plan_domain.cpp, plan_regions.cpp, plan_layers.cpp, plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
+// The steps from an unstructured mesh to its plan, one file per step: make_unstructured_plan.cpp, then
+// plan_columns.cpp, plan_turns.cpp, share_turns.cpp, plan_domain.cpp, plan_regions.cpp, plan_layers.cpp,
+// plan_background.cpp and plan_residual.cpp of this folder. Internal to unstructured.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -82,7 +83,8 @@ class UnstructuredPlanner {
   /// Directions of the columns on driving nodes, before columns are cut.
   void find_wall_lines();
   void plan_columns();
-  /// Columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of walls that slip: they go along.
+  /// Columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of walls that
+  /// slip: they go along.
   void find_held_columns();
   /// From the ends of those columns, and from boundaries beyond the moving walls.
   void measure_others();
@@ -130,8 +132,9 @@ class UnstructuredPlanner {
   void plan_layers();
   /// The smooth part covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
-  /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a passage that follow its
-  /// blade: were the near field to learn of them from the residual alone, it would be torn where they meet the wall.
+  /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a
+  /// passage that follow its blade: were the near field to learn of them from the residual alone, it would be torn
+  /// where they meet the wall.
   [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
   /// By layers turns fade from the ends of the columns on.
   void plan_layer_turns();
@@ -140,7 +143,8 @@ class UnstructuredPlanner {
 
   // plan_background.cpp
   void plan_background();
-  /// The outer box moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is shifted exactly.
+  /// The outer box moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is shifted
+  /// exactly.
   void plan_outer_box();
   void plan_projections();
   /// Wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.

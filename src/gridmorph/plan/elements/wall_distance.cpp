@@ -18,8 +18,8 @@ struct Found {
   Index32 source = -1;                                       ///< place in the list of sources; their number: none
 };
 
-/// Sweeps over fronts of nodes. All nodes of a sweep look at what was known before it, so neither the order of a front nor the number of
-/// threads matters.
+/// Sweeps over fronts of nodes. All nodes of a sweep look at what was known before it, so neither the order of a front
+/// nor the number of threads matters.
 class Spreading {
  public:
   Spreading(HostInstance const& host, Coordinates const& coordinates, NodeGraph const& graph,
@@ -77,7 +77,8 @@ class Spreading {
     return dot(d, d);
   }
 
-  /// Whether a source is nearer than another one; sources as far but for round-off go by their places. An order of all sources.
+  /// Whether a source is nearer than another one; sources as far but for round-off go by their places. An order of all
+  /// sources.
   [[nodiscard]] bool is_better(Found const& a, Found const& than) const {
     if (a.squared > than.squared * clearly_more) return false;
     if (a.squared < than.squared * clearly_less) return true;

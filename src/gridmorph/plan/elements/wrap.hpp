@@ -1,8 +1,8 @@
 // The wrap: cells of a coarse lattice around the moving walls of an unstructured mesh.
 //
 // What lies in it moves with the walls, element layer by element layer; between it and the outer box of the lattice a
-// structured background mesh carries the displacement (background.hpp). The wrap is simple on purpose: it walks over details
-// of the walls that are smaller than its cells.
+// structured background mesh carries the displacement (background.hpp). The wrap is simple on purpose: it walks over
+// details of the walls that are smaller than its cells.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -19,17 +19,18 @@ namespace gridmorph {
 
 struct WrapOptions {
   double offset = 0;  ///< every point of the mesh that is closer to a moving wall is wrapped; positive
-  /// Coarse cells along the longest extent of the walls, their offset included. Few are best: the steps of a wrap oblique to
-  /// the axes send grid lines to different places, and the finer the steps, the steeper the displacement between those lines.
-  /// A rod along a space diagonal that turns by 30 degrees keeps all background cells sound with 3 cells, loses 0.3 % with 10.
+  /// Coarse cells along the longest extent of the walls, their offset included. Few are best: the steps of a wrap
+  /// oblique to the axes send grid lines to different places, and the finer the steps, the steeper the displacement
+  /// between those lines. A rod along a space diagonal that turns by 30 degrees keeps all background cells sound with 3
+  /// cells, loses 0.3 % with 10.
   int resolution = 4;
   Index max_cells = 2000;  ///< of the lattice; coarser where the resolution asks for more
   double margin = 0;       ///< how far the outer box lies beyond the mesh; more where the wrap would touch it
-  /// A tube around walls that are long rather than wide, where one fits and the mesh around it is sound; else (see Wrap::note)
-  /// cells of the lattice. Best for walls oblique to the axes: a swept wing, a diagonal rod.
+  /// A tube around walls that are long rather than wide, where one fits and the mesh around it is sound; else (see
+  /// Wrap::note) cells of the lattice. Best for walls oblique to the axes: a swept wing, a diagonal rod.
   bool tube = false;
-  /// The chart that the lattice is made in, and the sides that end with the mesh: the wrap goes up to these and never beyond. Absent: x,
-  /// y and z, all sides open. A tube takes no notice of it.
+  /// The chart that the lattice is made in, and the sides that end with the mesh: the wrap goes up to these and never
+  /// beyond. Absent: x, y and z, all sides open. A tube takes no notice of it.
   std::optional<ChartedDomain> domain{};
 };
 
@@ -40,7 +41,8 @@ struct Wrap {
   double layer = 0;                           ///< smallest
   ChartedDomain domain;                       ///< planes and boxes are in the coordinates of its chart
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
-  /// Per side, low and high: whether its outermost cells are cells as any other, since the wrap reaches the end of the mesh there.
+  /// Per side, low and high: whether its outermost cells are cells as any other, since the wrap reaches the end of the
+  /// mesh there.
   std::array<std::array<bool, 2>, 3> reaches{};
   std::vector<std::uint8_t> inside;  ///< per cell, i fastest; else never in the outermost cells (of x and y in 2-D)
   std::optional<Tube> tube;          ///< the wrap, instead of cells: then the lattice is one cell, the outer box
@@ -65,8 +67,9 @@ struct Wrap {
       if ((c[a] == 0 && !reaches[a][0]) || (c[a] == cells(int(a)) - 1 && !reaches[a][1])) return true;
     return false;
   }
-  /// Whether nodes of a background slide on a side. Where the wrap reaches it they go along: beside them the near field is not on the surface yet either, what takes
-  /// it there is the residual of the boundaries, and where one of the two stops short of that elements between them lose shape.
+  /// Whether nodes of a background slide on a side. Where the wrap reaches it they go along: beside them the near field
+  /// is not on the surface yet either, what takes it there is the residual of the boundaries, and where one of the two
+  /// stops short of that elements between them lose shape.
   [[nodiscard]] bool slides(int axis, int which) const {
     auto const a = std::size_t(axis), s = std::size_t(which);
     return domain.side[a][s] == ChartedDomain::Side::slips && !reaches[a][s];
@@ -81,17 +84,18 @@ struct Wrap {
     return tube ? tube->contains(coordinates) : is_inside(find(coordinates));
   }
   [[nodiscard]] bool contains(Vec3 const& point) const { return holds(domain.chart(point)); }
-  /// Whether any point of a box of the chart is in the wrap, as holds() has it; of a tube see Tube::meets. Constant cost beyond the
-  /// bisection.
+  /// Whether any point of a box of the chart is in the wrap, as holds() has it; of a tube see Tube::meets. Constant
+  /// cost beyond the bisection.
   [[nodiscard]] bool meets(LatticeBox const& box) const;
   [[nodiscard]] Index n_inside() const { return sum.empty() ? 0 : sum.back(); }
 };
 
-/// Wraps moving walls. `walls`: corner nodes of their faces (edges in 2-D). A cell is in the wrap when it comes closer to a
-/// wall than the offset (along each axis, so at most sqrt(3) times the offset in the cells' corners); then gaps of one cell
-/// are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their neighbours.
-/// Lattice: even spacing where there are walls, offset included; single intervals between walls far apart and out to
-/// the outer box. Where the mesh ends on a side of WrapOptions::domain within half a cell, cells go on to that side. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
+/// Wraps moving walls. `walls`: corner nodes of their faces (edges in 2-D). A cell is in the wrap when it comes closer
+/// to a wall than the offset (along each axis, so at most sqrt(3) times the offset in the cells' corners); then gaps of
+/// one cell are closed, enclosed hollows filled, and cells that touch only along an edge or at a corner joined by their
+/// neighbours. Lattice: even spacing where there are walls, offset included; single intervals between walls far apart
+/// and out to the outer box. Where the mesh ends on a side of WrapOptions::domain within half a cell, cells go on to
+/// that side. Throws MeshError without walls, MotionError without a positive offset. Cost: linear in faces and cells.
 Wrap make_wrap(HostInstance const& host, Mesh const& mesh, std::span<CsrGraph const> walls, WrapOptions const& options);
 
 /// What the offset of the wrap depends on; lengths, 0 where unknown.
@@ -107,8 +111,8 @@ struct OffsetHints {
 ///
 ///     offset = max(layer_height, min(max(2 layer_height, 2 wall_edge, motion / 8, body / 25), room)),
 ///
-/// `room` being room_in_gap(gap, motion), a gap of 0 no limit: the layers move with their wall, a few elements outside them damp details of its motion, and of
-/// the way to other boundaries enough is left to take the motion up.
+/// `room` being room_in_gap(gap, motion), a gap of 0 no limit: the layers move with their wall, a few elements outside
+/// them damp details of its motion, and of the way to other boundaries enough is left to take the motion up.
 double suggest_offset(OffsetHints const& hints);
 
 /// The cells of the wrap as hexahedra (quadrilaterals in 2-D) with its surface as patch "wrap", to look at.

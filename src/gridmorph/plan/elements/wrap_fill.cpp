@@ -26,7 +26,8 @@ class Filler {
   }
 
  private:
-  /// Ends of the mesh that the wrap reaches count as wrapped: what is left between them and the wrap is a gap or a dent too.
+  /// Ends of the mesh that the wrap reaches count as wrapped: what is left between them and the wrap is a gap or a dent
+  /// too.
   [[nodiscard]] bool wrapped(Index3 const& c) const {
     for (std::size_t a = 0; a < std::size_t(wrap_.dimension); ++a)
       if ((c[a] < 0 && wrap_.reaches[a][0]) || (c[a] >= wrap_.cells(int(a)) && wrap_.reaches[a][1])) return true;
@@ -81,7 +82,8 @@ class Filler {
     return changed;
   }
 
-  /// Around every inner node of the lattice the cells inside must hang together through faces, and so must those outside.
+  /// Around every inner node of the lattice the cells inside must hang together through faces, and so must those
+  /// outside.
   bool join_contacts() {
     bool changed = false;
     int const top = wrap_.dimension == 2 ? 0 : wrap_.cells(2) - 1, height = wrap_.dimension == 2 ? 1 : 2;
@@ -111,7 +113,8 @@ class Filler {
     }
     return seen == cells;
   }
-  /// Which cells to add: those with two neighbours inside, which join contacts along edges; all of them where there are none.
+  /// Which cells to add: those with two neighbours inside, which join contacts along edges; all of them where there are
+  /// none.
   static bool joins(unsigned inside, int cell) {
     auto neighbours = [&](unsigned n) {
       return (inside >> (n ^ 1u) & 1u) + (inside >> (n ^ 2u) & 1u) + (inside >> (n ^ 4u) & 1u);

@@ -56,7 +56,8 @@ std::vector<Interval> covered(Coordinates const& q, std::span<CsrGraph const> wa
   return out;
 }
 
-/// Takes the offset off the ends of the walls' intervals beyond which there is no element as far as the offset goes: walls that end on a solid or on the end of the mesh.
+/// Takes the offset off the ends of the walls' intervals beyond which there is no element as far as the offset goes:
+/// walls that end on a solid or on the end of the mesh.
 void trim(Mesh const& mesh, Coordinates const& q, std::size_t n_axes, std::span<CsrGraph const> walls, double offset,
           std::array<std::vector<Interval>, 3>& intervals) {
   auto const all = [&](std::size_t a) { return Interval{intervals[a].front().low, intervals[a].back().high}; };
@@ -123,8 +124,8 @@ int parts(double length, double spacing) { return std::max(1, int(std::lround(le
 /// All planes of one axis.
 std::vector<double> planes_of(std::vector<Interval> intervals, Interval const& domain, double spacing, double margin,
                               std::array<bool, 2> const& ends, std::array<bool, 2>& reaches) {
-  // Where walls come close to the limits of the mesh or reach them, the wrap goes a little beyond, so that these limits do not
-  // cut slivers off its surroundings; where the mesh ends on a side of the lattice, it goes just there.
+  // Where walls come close to the limits of the mesh or reach them, the wrap goes a little beyond, so that these limits
+  // do not cut slivers off its surroundings; where the mesh ends on a side of the lattice, it goes just there.
   double const beyond = 0.25 * spacing, close = 0.53 * spacing;
   double &low = intervals.front().low, &high = intervals.back().high;
   reaches = {ends[0] && low < domain.low + close, ends[1] && high > domain.high - close};

@@ -1,4 +1,5 @@
-// Non-orthogonality and face skewness of elements, from their centres (kernels/face_geometry.hpp); internal to the quality part.
+// Non-orthogonality and face skewness of elements, from their centres (kernels/face_geometry.hpp); internal to the
+// quality part.
 #pragma once
 
 #include <gridmorph/quality/detail/partial_sums.hpp>
@@ -64,8 +65,9 @@ Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres
   return centres;
 }
 
-/// Of element e; boundary faces have no line between centres, but a skewness. Behind a connection the neighbour lies as far from the face there as
-/// its image does from the one here, whatever became of the two sides: d = (f - x) + turn (y - f'), f' the centre of the face there.
+/// Of element e; boundary faces have no line between centres, but a skewness. Behind a connection the neighbour lies as
+/// far from the face there as its image does from the one here, whatever became of the two sides: d = (f - x) + turn (y
+/// - f'), f' the centre of the face there.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const& tables,
                                                 SideTables<MemorySpace> const& sides,

@@ -5,8 +5,8 @@
 
 namespace gridmorph::detail {
 
-/// measure_quality() for QualityInput::fast: numbers of cells, what fell, smallest determinant and angle. `input` has been checked
-/// and knows the handedness.
+/// measure_quality() for QualityInput::fast: numbers of cells, what fell, smallest determinant and angle. `input` has
+/// been checked and knows the handedness.
 template <class Exec>
 QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input);
 

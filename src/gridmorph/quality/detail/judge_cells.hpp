@@ -1,7 +1,7 @@
 // Which cells fell short of their limits by a morph; internal to the quality part.
 //
-// Few cells of a mesh come near a limit. A cheap look at every cell (CellScreen) finds those that may have fallen whatever they
-// were in the baseline; only they are measured there too and judged.
+// Few cells of a mesh come near a limit. A cheap look at every cell (CellScreen) finds those that may have fallen
+// whatever they were in the baseline; only they are measured there too and judged.
 #pragma once
 
 #include <gridmorph/kernels/flat_cells.hpp>
@@ -9,11 +9,12 @@
 
 namespace gridmorph::detail {
 
-/// Below these values a loss is measured against them: a determinant of 0.01 that becomes 0.001 lost nothing worth a failure.
+/// Below these values a loss is measured against them: a determinant of 0.01 that becomes 0.001 lost nothing worth a
+/// failure.
 inline constexpr double least_determinant = 0.05, least_angle_deg = 1;
 
-/// Cells beyond one of these may have fallen. No determinant is above 1 and no smallest angle above 90 degrees, so what is above
-/// 1 - max_loss of that cannot have lost more.
+/// Cells beyond one of these may have fallen. No determinant is above 1 and no smallest angle above 90 degrees, so what
+/// is above 1 - max_loss of that cannot have lost more.
 struct CellScreen {
   double determinant, angle_deg, skewness;
   double angle_cosine, skewness_cosine;  ///< the same two as cosines, for cells of structured meshes
@@ -42,8 +43,8 @@ KOKKOS_INLINE_FUNCTION void count_state(PartialRegion& region, double smallest_c
   region.flat += smallest_corner_jacobian == 0 ? 1 : 0;
 }
 
-/// Adds a cell to those that fell, in every way in which it did; what is inverted now has no loss. flat_cell(): its FlatCell, asked for
-/// where the sign of a Jacobian is not what it was.
+/// Adds a cell to those that fell, in every way in which it did; what is inverted now has no loss. flat_cell(): its
+/// FlatCell, asked for where the sign of a Jacobian is not what it was.
 template <class Flat>
 KOKKOS_INLINE_FUNCTION void judge(PartialRegion& region, CellLimits const& limits, kernels::CellMeasures const& before,
                                   kernels::CellMeasures const& now, Index cell, Flat const& flat_cell) {

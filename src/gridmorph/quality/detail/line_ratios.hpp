@@ -1,14 +1,16 @@
-// Edges and faces of cells against those that continue them along the grid lines, inside zones and across 1-to-1 interfaces; internal to the
-// quality part.
+// Edges and faces of cells against those that continue them along the grid lines, inside zones and across 1-to-1
+// interfaces; internal to the quality part.
 //
 //   growth ratio     edges pq and qr that follow one another along a grid line: max(|pq| / |qr|, |qr| / |pq|)
-//   face area ratio  faces F and G of one grid surface with an edge in common: max(A_F / A_G, A_G / A_F), A = |d1 x d2| / 2 with the diagonals
+//   face area ratio  faces F and G of one grid surface with an edge in common: max(A_F / A_G, A_G / A_F), A = |d1 x d2|
+//   / 2 with the diagonals
 //                    d1, d2 of the face, the size of its area vector
 //
-// A cell has the largest ratio of any of its 12 edges, or 6 faces, to those that continue them, 1 where none does. Edges shorter than
-// `collapsed_fraction` of the cell's longest one, and faces smaller than that of its largest one, are left out (poles, wedges); `unbounded` where a
-// corner is not finite. Squares are compared, so that a cell has one square root and one division. Cost per cell: 16 lengths (128 flops) or 17
-// areas (340), 24 comparisons; nothing is kept.
+// A cell has the largest ratio of any of its 12 edges, or 6 faces, to those that continue them, 1 where none does.
+// Edges shorter than `collapsed_fraction` of the cell's longest one, and faces smaller than that of its largest one,
+// are left out (poles, wedges); `unbounded` where a corner is not finite. Squares are compared, so that a cell has one
+// square root and one division. Cost per cell: 16 lengths (128 flops) or 17 areas (340), 24 comparisons; nothing is
+// kept.
 #pragma once
 
 #include <gridmorph/quality/detail/zone_cells.hpp>
@@ -35,8 +37,8 @@ struct LinkedFace {
   }
 };
 
-/// Both sides of every interface that joins faces of zones, those of zone z being first[z] <= n < first[z + 1]. Ranges have been checked by
-/// interface_table().
+/// Both sides of every interface that joins faces of zones, those of zone z being first[z] <= n < first[z + 1]. Ranges
+/// have been checked by interface_table().
 struct LinkedFaceTable {
   std::vector<LinkedFace> faces;
   std::vector<int> first;
@@ -57,7 +59,8 @@ LinkedFaces<typename Exec::memory_space> upload_linked_faces(Exec const& exec, M
           upload(exec, "gridmorph::quality::first_linked_faces", table.first)};
 }
 
-/// The two squares of the largest ratio so far of up to N cells in a row: ratios are compared by products, so that one is divided.
+/// The two squares of the largest ratio so far of up to N cells in a row: ratios are compared by products, so that one
+/// is divided.
 template <int N>
 struct RowRatios {
   double largest[N], smallest[N], limit[N], finite[N];
@@ -94,7 +97,8 @@ struct RowRatios {
   }
 };
 
-/// Squares of the lengths of edges along, or four times those of the areas of faces across, direction a, by their node with the lowest indices.
+/// Squares of the lengths of edges along, or four times those of the areas of faces across, direction a, by their node
+/// with the lowest indices.
 template <LinePart part, class MemorySpace>
 struct LineSizes {
   CoordinateViews<MemorySpace> x;
@@ -226,8 +230,8 @@ KOKKOS_INLINE_FUNCTION void row_ratios(LineSizes<LinePart::face, MemorySpace> co
     }
 }
 
-/// Cell n of a row at an interface: what lies behind it. The edge along the interface's axis, or the face across `a`, at offsets s along e and q along f in
-/// the interface.
+/// Cell n of a row at an interface: what lies behind it. The edge along the interface's axis, or the face across `a`,
+/// at offsets s along e and q along f in the interface.
 template <LinePart part, int N, class MemorySpace>
 KOKKOS_INLINE_FUNCTION void compare_across(LineSizes<part, MemorySpace> const& sizes, LinkedFace const& face,
                                            RowPlace const& at, int n, int a, int e, int s, int f, int q,

@@ -6,8 +6,8 @@ namespace gridmorph {
 
 namespace {
 
-/// +1 where two elements name the side between them in opposite ways, as neighbours numbered alike do, -1 where in the same way,
-/// 0 where it cannot be told.
+/// +1 where two elements name the side between them in opposite ways, as neighbours numbered alike do, -1 where in the
+/// same way, 0 where it cannot be told.
 int alike(std::span<Index32 const> own, std::span<Index32 const> other) {
   std::size_t const n = own.size();
   if (n != other.size() || n < 2) return 0;

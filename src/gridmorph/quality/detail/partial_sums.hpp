@@ -14,8 +14,8 @@ struct PartialMeasure {
   double sum = 0, min = kernels::unbounded, max = -kernels::unbounded;
   Index worst_cell = -1;  ///< number in the mesh, the first one of equals
 
-  /// Adds values of consecutive cells, the first one of them `cell`. Sums are made in `partial_sums` parts, so that they
-  /// do not depend on the number of lanes.
+  /// Adds values of consecutive cells, the first one of them `cell`. Sums are made in `partial_sums` parts, so that
+  /// they do not depend on the number of lanes.
   template <int W>
   KOKKOS_INLINE_FUNCTION void add(double const* value, int count, Index cell, bool larger_is_worse) {
     double total = 0, least = kernels::unbounded, largest = -kernels::unbounded;

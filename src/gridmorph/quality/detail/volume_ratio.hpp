@@ -1,4 +1,5 @@
-// Volume of a cell against its face neighbours, inside zones and across 1-to-1 interfaces; internal to the quality part.
+// Volume of a cell against its face neighbours, inside zones and across 1-to-1 interfaces; internal to the quality
+// part.
 #pragma once
 
 #include <gridmorph/quality/detail/zone_cells.hpp>
@@ -14,8 +15,8 @@ struct FaceOfRange {
 /// The face of a zone that a node range lies on; nothing for edges, corners and ranges inside the zone.
 std::optional<FaceOfRange> face_of(Zone const& zone, IndexRange const& range);
 
-/// Cells behind one side of an interface: for own cell p (begin <= p < end, on face `side` along `axis`) the neighbour is
-/// cell donor_offset + sum of donor_stride[a] * p[a].
+/// Cells behind one side of an interface: for own cell p (begin <= p < end, on face `side` along `axis`) the neighbour
+/// is cell donor_offset + sum of donor_stride[a] * p[a].
 struct InterfaceCells {
   int axis = 0, side = 0;
   int begin[3] = {0, 0, 0}, end[3] = {0, 0, 0};

@@ -9,9 +9,9 @@
 
 namespace gridmorph {
 
-/// Fraction of the pitch from the lower periodic side (0) to the upper one (1), at the same place of the meridional plane. Made from the grid lines,
-/// or the edges of faces, in which patches (an inlet, say) meet the lower side; between their nodes the position along the pitch is linear. In a
-/// straight row that place is across the pitch.
+/// Fraction of the pitch from the lower periodic side (0) to the upper one (1), at the same place of the meridional
+/// plane. Made from the grid lines, or the edges of faces, in which patches (an inlet, say) meet the lower side;
+/// between their nodes the position along the pitch is linear. In a straight row that place is across the pitch.
 class PitchFraction {
  public:
   PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row,

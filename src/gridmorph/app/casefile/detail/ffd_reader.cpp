@@ -102,7 +102,8 @@ std::optional<std::array<int, 3>> read_three(TableReader& table, std::string con
   return std::nullopt;
 }
 
-/// Degrees: as given, a single number as far as the control points allow; without any Bernstein polynomials, or cubics of a file's lattice.
+/// Degrees: as given, a single number as far as the control points allow; without any Bernstein polynomials, or cubics
+/// of a file's lattice.
 void read_degree(TableReader& table, FfdRule& rule, bool of_file) {
   auto const* value = table.find("degree");
   auto const given = read_three(table, "degree", true);
@@ -162,7 +163,8 @@ std::optional<std::array<std::array<int, 2>, 3>> read_at(TableReader& table, Ffd
   return std::nullopt;
 }
 
-/// Displacements of groups of control points, which add up: d, or scale, rotation and translation of where the points are.
+/// Displacements of groups of control points, which add up: d, or scale, rotation and translation of where the points
+/// are.
 void read_points(TableReader& table, RuleContext const& shared, FfdLattice const* lattice, FfdRule& rule) {
   for (auto& point : table.tables("points")) {
     auto const at = read_at(point, rule);

@@ -22,7 +22,8 @@ struct NumberLine {
   std::vector<double> values;  ///< in the order of the columns asked for
 };
 
-/// Columns and lines in any order. Throws ConfigError with all problems, each as "source:line: ..."; also where there is no line of `what` ("heights").
+/// Columns and lines in any order. Throws ConfigError with all problems, each as "source:line: ..."; also where there
+/// is no line of `what` ("heights").
 std::vector<NumberLine> read_number_table(std::string_view text, std::string const& source,
                                           std::vector<NumberColumn> const& columns, std::string const& what);
 

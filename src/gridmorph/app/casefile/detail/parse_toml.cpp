@@ -19,13 +19,14 @@ namespace {
 
 /// The parser recurses into brackets and into the parts of a key; nobody nests them this deep.
 constexpr int deepest_nesting = 64;
-/// The parser reads the whole line for each value in it. Arrays are given to it in lines of about this length, and the rest (tables in braces)
-/// may cost it so many characters in all.
+/// The parser reads the whole line for each value in it. Arrays are given to it in lines of about this length, and the
+/// rest (tables in braces) may cost it so many characters in all.
 constexpr std::size_t long_line = 200;
 constexpr std::uint64_t most_read_again = 1'000'000'000;
 
-/// Looks through a text before the parser does. Refuses what is no text at all, brackets and keys nested so deep that a recursive parser would
-/// run out of stack, and lines of more values than it can read in time; breaks long arrays into lines.
+/// Looks through a text before the parser does. Refuses what is no text at all, brackets and keys nested so deep that a
+/// recursive parser would run out of stack, and lines of more values than it can read in time; breaks long arrays into
+/// lines.
 class Preparation {
  public:
   Preparation(std::string const& text, std::string const& file) : text_(text), file_(file) {}
