@@ -20,14 +20,9 @@ namespace {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
 struct SphereCase {
-  gridmorph::Mesh mesh;
-  gridmorph::UnstructuredTopology topology;
-  gridmorph::BoundaryFacePatches face_patches;
+  gridmorph::IndexedMesh mesh;
 
-  explicit SphereCase(gridmorph::Index elements)
-      : mesh(gridmorph::make_sphere({.elements = elements})),
-        topology(gridmorph::make_topology(mesh)),
-        face_patches(gridmorph::find_face_patches(mesh, topology)) {}
+  explicit SphereCase(gridmorph::Index elements) : mesh(gridmorph::make_sphere({.elements = elements})) {}
 
   /// The sphere turned by an angle about an axis that no grid line follows; the outer sphere, a far field, stands.
   gridmorph::Coordinates turned(double angle_deg, int steps) {
@@ -37,18 +32,17 @@ struct SphereCase {
     rule.patches = {"sphere"};
     rule.rule = gridmorph::RigidRule{turn.rotation, turn.translation};
     rule.where = "sphere_turns";
-    gridmorph::MorphPlan const plan(mesh, motion);
+    gridmorph::MorphPlan const plan(gridmorph::HostInstance(), mesh, motion);
     gridmorph::StepOptions options;
     options.steps = steps;
-    return gridmorph::morph_in_steps(mesh, topology, face_patches, *plan.elements(), plan.boundary_displacement(),
-                                     options);
+    return gridmorph::morph_in_steps(mesh, plan, plan.boundary_displacement(), options);
   }
 
   [[nodiscard]] std::string verdict(gridmorph::Coordinates const& morphed) const {
     gridmorph::UnstructuredQualityInput<Kokkos::HostSpace> input;
-    input.baseline = gridmorph::views(mesh.coordinates);
+    input.baseline = gridmorph::views(mesh.mesh().coordinates);
     input.coordinates = gridmorph::views(morphed);
-    auto const quality = gridmorph::measure_quality(Exec(), mesh, topology, face_patches, input).far_field;
+    auto const quality = gridmorph::measure_quality(Exec(), mesh.mesh(), mesh.topology(), mesh.face_patches(), input).far_field;
     char text[64];
     std::snprintf(text, sizeof text, "%lld (%.3g)", static_cast<long long>(quality.newly_inverted),
                   quality[gridmorph::Measure::determinant_3x3x3].min);
@@ -65,7 +59,7 @@ int main(int argc, char** argv) {
   for (int a = 2; a < argc; ++a) angles.push_back(std::atof(argv[a]));
   if (angles.empty()) angles = {45, 90};
   std::printf("%lld elements; inverted (smallest determinant)\n%-12s%18s%18s%18s\n",
-              static_cast<long long>(sphere.mesh.n_elements()), "angle [deg]", "one step", "2 steps", "3 steps");
+              static_cast<long long>(sphere.mesh.n_cells()), "angle [deg]", "one step", "2 steps", "3 steps");
   for (double const angle : angles) {
     std::printf("%-12g", angle);
     for (int const steps : {1, 2, 3}) std::printf("%18s", sphere.verdict(sphere.turned(angle, steps)).c_str());

@@ -29,7 +29,7 @@ class PyPlan {
     plan_.emplace(host, *mesh_, motion.file.motion, motion.file.plan);
     if (freeze) {
       std::vector<std::vector<Vec3>> const once{plan_->boundary_displacement()};
-      plan_ = freeze_guard(host, *mesh_, *plan_, once);
+      plan_ = freeze_guard(host, IndexedMesh(host, *mesh_), *plan_, once);
     }
     for (Index const n : plan_->boundary_nodes()) boundary_nodes_.push_back(n);
     notes_ = motion.file.notes;

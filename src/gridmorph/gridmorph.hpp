@@ -3,6 +3,7 @@
 
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/mesh/file_order.hpp>
@@ -16,6 +17,7 @@
 #include <gridmorph/motion/height_table.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
 #include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/indexed_mesh.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/quality/validity.hpp>
 #include <gridmorph/version.hpp>

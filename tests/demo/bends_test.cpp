@@ -5,6 +5,7 @@
 #include <generators/aircraft.hpp>
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/prediction.hpp>
 
 #include <gtest/gtest.h>
@@ -67,7 +68,7 @@ TEST(Bends, ThatAreSoundByPriorityAreLeftToIt) {
   PreparedMorph const prepared = prepare(HostInstance(), aircraft(), bent_wing(0.01), {});
   EXPECT_FALSE(is_inverted_by_priority(HostInstance(), prepared, prepared.boundary_displacement()));
   MorphPlan const plan(aircraft(), bent_wing(0.01));
-  EXPECT_EQ(plan.blocks()->planned.order, prepared.planned.order);
+  EXPECT_EQ(PlanAccess::blocks(plan)->planned.order, prepared.planned.order);
 }
 
 }  // namespace

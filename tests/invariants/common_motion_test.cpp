@@ -5,6 +5,7 @@
 
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/morph/stage_by_stage.hpp>
@@ -312,7 +313,7 @@ TEST(CommonMotionOfParts, AsksForNoOtherOrderOfChains) {
   PlanOptions asked;
   asked.volume.order = OrderBy::prediction;
   MorphPlan const by_prediction(mesh, motion({rule({"*"}, moves_as([&](Vec3 const& p) { return r(p); }))}), asked);
-  EXPECT_EQ(by_prediction.blocks()->plan().common.size(), 1U);
+  EXPECT_EQ(PlanAccess::blocks(by_prediction)->plan().common.size(), 1U);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/morph/best_order.hpp>
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/predictor.hpp>
 
 #include <gtest/gtest.h>
@@ -64,7 +65,7 @@ TEST_P(Orders, FoundByPredictionAreNeverWorseThanByPriorityAndComeOutAsPredicted
   PlanOptions options = GetParam().options;
   options.volume.order = OrderBy::prediction;
   MorphPlan const plan(GetParam().mesh(), GetParam().motion(1), options);
-  EXPECT_EQ(plan.blocks()->planned.order, found.order) << "another search finds the same";
+  EXPECT_EQ(PlanAccess::blocks(plan)->planned.order, found.order) << "another search finds the same";
   PredictedCells const again = predict(HostInstance(), plan, boundary).all;
   EXPECT_EQ(again.scaled_jacobian.value, found.by_prediction.scaled_jacobian.value);
   EXPECT_EQ(again.kept.value, found.by_prediction.kept.value);

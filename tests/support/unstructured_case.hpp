@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/geometry/rigid_transform.hpp>
-#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>

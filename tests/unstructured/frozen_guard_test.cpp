@@ -88,7 +88,7 @@ TEST(FrozenGuardOfElements, ATurnThatInvertsIsMendedAsTheGuardMendsIt) {
   }
   MorphPlan const plan(mesh, bar.motion(angle));
   Vectors const given[]{plan.boundary_displacement()};
-  MorphPlan const mended = freeze_guard({}, mesh, plan, given);
+  MorphPlan const mended = freeze_guard({}, IndexedMesh(mesh), plan, given);
   ASSERT_NE(mended.smoothing(), nullptr);
   EXPECT_EQ(plan.smoothing(), nullptr) << "the other plan stays as it is";
   auto const inverted = [&](MorphPlan const& by, double share) {

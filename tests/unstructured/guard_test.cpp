@@ -4,7 +4,7 @@
 #include "support/random.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/guard/guard.hpp>
+#include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
@@ -60,7 +60,7 @@ TEST(Guard, AnAffineMotionIsLeftAlone) {
   }
   Coordinates before(box.mesh.n_nodes());
   for (Index n = 0; n < box.mesh.n_nodes(); ++n) before.set(n, box.morphed[n]);
-  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
+  GuardReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
   EXPECT_EQ(report.before, 0);
   EXPECT_EQ(report.rounds, 0);
   for (Index n = 0; n < box.mesh.n_nodes(); ++n) EXPECT_EQ(box.morphed[n], before[n]);
@@ -79,7 +79,7 @@ TEST(Guard, NodesThatWentAstrayAreBroughtBack) {
   RelaxOptions const options;
   Index const bad = box.bad(options.share);
   ASSERT_GT(bad, 50);
-  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed, options);
+  GuardReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed, options);
   EXPECT_EQ(report.before, bad);
   EXPECT_EQ(report.after, box.bad(options.share));
   EXPECT_LT(report.after, bad / 10);
@@ -93,7 +93,7 @@ TEST(Guard, WhatIsHeldStays) {
     if (Vec3 const x = box.mesh.coordinates[n]; x.z == 0) box.morphed.set(n, x + Vec3{0, 0, 1.5});
   Coordinates before(n_nodes);
   for (Index n = 0; n < n_nodes; ++n) before.set(n, box.morphed[n]);
-  RelaxReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
+  GuardReport const report = relax_bad_elements(box.mesh, box.topology, box.prepared, box.morphed);
   EXPECT_GT(report.before, 0);
   EXPECT_EQ(report.after, box.bad(RelaxOptions().share));
   EXPECT_LE(std::pair(report.inverted_after, report.after), std::pair(report.inverted_before, report.before));
@@ -141,13 +141,13 @@ TEST_P(TangledElements, ComeHome) {
     Vec3 const move = held[std::size_t(n)] != 0 ? Vec3{} : random.vector(amplitude);
     tangled.set(n, mesh.coordinates[n] + move);
   }
-  auto const relaxed = [&](RelaxReport& report) {
+  auto const relaxed = [&](GuardReport& report) {
     Coordinates x(mesh.n_nodes());
     for (Index n = 0; n < mesh.n_nodes(); ++n) x.set(n, tangled[n]);
     report = relax_bad_elements(mesh, topology, prepared, x);
     return x;
   };
-  RelaxReport report;
+  GuardReport report;
   Coordinates const x = relaxed(report);
   EXPECT_GT(report.inverted_before, kind == Cells::polyhedra ? 1 : 20);  // by pyramids fewer are inside out
   EXPECT_EQ(report.inverted_before,

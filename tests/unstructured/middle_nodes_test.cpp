@@ -165,7 +165,7 @@ TEST(MiddleNodes, WhatPullsThemIsFrozenIntoPlans) {
   Motion const motion = bumps(c.mesh, 0.15);
   MorphPlan const plan(c.mesh, motion);
   Vectors const given[]{plan.boundary_displacement()};
-  MorphPlan const frozen = freeze_guard({}, c.mesh, plan, given);
+  MorphPlan const frozen = freeze_guard({}, IndexedMesh(c.mesh), plan, given);
   ASSERT_NE(frozen.smoothing(), nullptr);
   Coordinates x(c.mesh.n_nodes());
   Morpher<Exec> const morpher(Exec(), frozen, c.mesh.coordinates);

@@ -8,6 +8,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/guard/motion_path.hpp>
+#include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/block_stages.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/morph/stage_by_stage.hpp>
 
@@ -76,6 +76,14 @@ bool is_stage_of_blocks(std::filesystem::path const& path) {
   return name.starts_with("stage_") && name.ends_with(".cgns") && name.size() > 8 &&
          std::isdigit(static_cast<unsigned char>(name[6])) != 0 &&
          std::isdigit(static_cast<unsigned char>(name[7])) != 0;
+}
+
+void make_stage_folder(std::filesystem::path const& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw MachineError(
+        fmt::format("the folder '{}' for the stages cannot be made: {}", folder.string(), error.message()));
 }
 
 void write_block_stages(std::filesystem::path const& folder, Mesh const& mesh, Plan const& plan,

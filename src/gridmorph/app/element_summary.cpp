@@ -1,7 +1,7 @@
 // What inspect says of unstructured meshes.
 #include <gridmorph/app/cli/boundary_guess.hpp>
 #include <gridmorph/app/cli/mesh_summary.hpp>
-#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
 
@@ -94,8 +94,9 @@ std::string periodic_text(PeriodicSummary const& p) {
 
 }  // namespace
 
-std::string ElementMesh::text(MeshSummary const& summary, std::string const& quality,
-                              SnippetOptions const& options) const {
+std::string inspect_elements_text(LoadedMesh const& loaded, MeshSummary const& summary, std::string const& quality,
+                                  SnippetOptions const& options) {
+  Mesh const& mesh = loaded.mesh();
   bool const hybrid = n_blocks(mesh) > 0;
   std::string text =
       fmt::format("{}: {}, {}-D, {} zone{}, {} nodes, {} elements ({})\n", mesh.source,
@@ -125,13 +126,15 @@ std::string ElementMesh::text(MeshSummary const& summary, std::string const& qua
         fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
                     mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name, c.nodes.size(),
                     largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
-  text += list_text("Notes of the reader", notes());
-  text += list_text("Remarks", remarks);
-  text += list_text("Problems that stop a morph", problems);
+  text += list_text("Notes of the reader", loaded.notes());
+  text += list_text("Remarks", loaded.remarks());
+  text += list_text("Problems that stop a morph", loaded.problems());
   return text + "\n" + quality + "\nA case file to start from\n\n" + case_snippet(summary, options);
 }
 
-nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions const& options) const {
+nlohmann::json inspect_elements_json(LoadedMesh const& loaded, MeshSummary const& summary,
+                                     SnippetOptions const& options) {
+  Mesh const& mesh = loaded.mesh();
   auto const vector = [](Vec3 const& v) { return nlohmann::json{v.x, v.y, v.z}; };
   auto const box_json = [&](Box const& box) {
     return box.low.x <= box.high.x ? nlohmann::json{{"min", vector(box.low)}, {"max", vector(box.high)}}
@@ -145,10 +148,10 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
     return out;
   };
   nlohmann::json json{
-      {"source", mesh.source},       {"unstructured", true},      {"hybrid", n_blocks(mesh) > 0},
-      {"dimension", mesh.dimension}, {"nodes", mesh.n_nodes()},   {"elements", mesh.n_elements()},
-      {"types", types_json(-1)},     {"families", mesh.families}, {"notes", notes()},
-      {"problems", problems},        {"remarks", remarks},        {"case_file", case_snippet(summary, options)}};
+      {"source", mesh.source},         {"unstructured", true},        {"hybrid", n_blocks(mesh) > 0},
+      {"dimension", mesh.dimension},   {"nodes", mesh.n_nodes()},     {"elements", mesh.n_elements()},
+      {"types", types_json(-1)},       {"families", mesh.families},   {"notes", loaded.notes()},
+      {"problems", loaded.problems()}, {"remarks", loaded.remarks()}, {"case_file", case_snippet(summary, options)}};
   json["subsets"] = nlohmann::json::array();
   for (Subset const& subset : mesh.subsets)
     json["subsets"].push_back(
@@ -178,7 +181,7 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
                                   {"kind", to_string(patch.kind)},
                                   {"bc_type", patch.bc_type},
                                   {"zone", mesh.zones[std::size_t(patch.zone)].name},
-                                  {"faces", face_patches.faces_of_patch[p]},
+                                  {"faces", loaded.indexed().face_patches().faces_of_patch[p]},
                                   {"nodes", nodes.size()},
                                   {"box", box_json(box_of(mesh, nodes))}});
   }
@@ -201,15 +204,15 @@ nlohmann::json ElementMesh::json(MeshSummary const& summary, SnippetOptions cons
 namespace {
 
 /// Mean and smallest distance of the corners opposite a boundary face from it: the height of the first cell.
-void measure_heights(ElementMesh const& loaded, std::vector<int> const& boundary_of_patch,
+void measure_heights(IndexedMesh const& loaded, std::vector<int> const& boundary_of_patch,
                      std::vector<BoundarySummary>& boundaries) {
-  auto const& mesh = loaded.mesh;
-  auto const& faces = loaded.topology.boundary;
+  Mesh const& mesh = loaded.mesh();
+  auto const& faces = loaded.topology().boundary;
   std::vector<double> sum(boundaries.size(), 0), smallest(boundaries.size(), Box::inf);
   std::vector<Index> count(boundaries.size(), 0);
   Vec3 const up = plane_normal(mesh);
   for (Index f = 0; f < faces.size(); ++f) {
-    int const patch = loaded.face_patches.patch[std::size_t(f)];
+    int const patch = loaded.face_patches().patch[std::size_t(f)];
     if (patch < 0) continue;
     auto const b = std::size_t(boundary_of_patch[std::size_t(patch)]);
     auto const face = faces.nodes[f];
@@ -275,7 +278,8 @@ void join_by_position(Mesh const& mesh, std::vector<BoundarySummary> const& boun
 
 }  // namespace
 
-MeshSummary ElementMesh::summary() const {
+MeshSummary summarize_elements(LoadedMesh const& loaded) {
+  Mesh const& mesh = loaded.mesh();
   MeshSummary out;
   out.unstructured = true;
   out.source = mesh.source;
@@ -313,7 +317,7 @@ MeshSummary ElementMesh::summary() const {
     once(found->names, patch.name);
     if (!patch.bc_type.empty()) once(found->bc_types, patch.bc_type);
     found->patches.push_back(p);
-    found->faces += face_patches.faces_of_patch[std::size_t(p)];
+    found->faces += loaded.indexed().face_patches().faces_of_patch[std::size_t(p)];
     auto const nodes = patch_nodes(patch);
     found->nodes += Index(nodes.size());
     auto& points = shapes[b].patches.emplace_back();
@@ -325,7 +329,7 @@ MeshSummary ElementMesh::summary() const {
     }
   }
   join_by_position(mesh, out.boundaries, nodes_of_boundary);
-  measure_heights(*this, boundary_of_patch, out.boundaries);
+  measure_heights(loaded.indexed(), boundary_of_patch, out.boundaries);
   guess_roles(mesh.coordinates, shapes, out);
   find_touching(out.boundaries, nodes_of_boundary, mesh.n_nodes());
   return out;

@@ -34,7 +34,7 @@ Retried Run::retry(std::vector<Moment> const& moments) {
   struct Before {
     Result result;
     std::vector<Vec3> displacement;
-    std::unique_ptr<AnyPlan> plan;
+    std::unique_ptr<CasePlan> plan;
   };
   std::optional<Before> before;
   bool const elements = result_.quality.unstructured;
@@ -49,7 +49,7 @@ Retried Run::retry(std::vector<Moment> const& moments) {
           [&](CaseFile const& other) {
             before.emplace(Before{std::move(result_), displacement_, std::exchange(plan_, nullptr)});
             result_ = {Coordinates(mesh_->n_nodes()), {}, {case_file_.output_options.displacement, {}, {}}};
-            plan_ = mesh_->plan(other);
+            plan_ = std::make_unique<CasePlan>(*mesh_, other);
             if (other.guard.smooth) freeze_guard(moments);
             (void)morph(when);
             measure();

@@ -2,7 +2,7 @@
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
-#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/app/element_stages.hpp>
 #include <gridmorph/app/run.hpp>
 #include <gridmorph/app/run_page.hpp>
 #include <gridmorph/core/error.hpp>
@@ -76,11 +76,11 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Terminal& terminal)
     : case_file_(case_file), terminal_(terminal) {
   Stopwatch watch;
   terminal.progress("reading " + case_file.input.string());
-  mesh_ = load(file, case_file.side_file);
+  mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out);
   times.push_back({"read", watch.lap(), true});
   terminal.progress(mesh_->kind().planning);
-  mesh_->check_fields(case_file);
-  plan_ = mesh_->plan(case_file);
+  check_fields(case_file, mesh_->mesh());
+  plan_ = std::make_unique<CasePlan>(*mesh_, case_file);
   notes = plan_->notes();
   for (auto& time : plan_->times()) times.push_back(std::move(time));
   wanted_.limits = case_file.guard;
@@ -109,7 +109,7 @@ Run::KeptMeasure Run::kept(Measure measure) const {
   return {in(baseline_measures_), after != nullptr ? after : in(result_.fields.cells)};
 }
 
-RelaxReport Run::morph(Moment const* when, StepTimes* took) {
+GuardReport Run::morph(Moment const* when, StepTimes* took) {
   Stopwatch watch;
   if (took != nullptr) terminal_.progress("moving the boundary");
   displacement_ = plan_->displacement(when);
@@ -121,7 +121,7 @@ RelaxReport Run::morph(Moment const* when, StepTimes* took) {
   watch.lap();
   if (!plan_->guards()) return {};
   if (took != nullptr) terminal_.progress("looking for bad " + mesh_->kind().cells);
-  RelaxReport const report = plan_->relax(result_.morphed);
+  GuardReport const report = plan_->relax(result_.morphed);
   if (took != nullptr) took->push_back({"guard", watch.lap(), true});
   return report;
 }
@@ -412,7 +412,7 @@ int morph_once(CaseFile const& case_file, MeshSource const& file, Terminal& term
   if (options.page) page.emplace(case_file, typed);
   Run run(case_file, file, terminal);
   if (page) run.keep_measures();
-  RelaxReport const relaxed = run.morph(nullptr, &run.times);
+  GuardReport const relaxed = run.morph(nullptr, &run.times);
   std::vector<std::string> guarded;
   if (relaxed.before > 0)
     guarded.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",

@@ -4,7 +4,8 @@
 //   report
 #pragma once
 
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/case_plan.hpp>
+#include <gridmorph/app/casefile/field_check.hpp>
 #include <gridmorph/app/casefile/ignored_keys.hpp>
 #include <gridmorph/app/clearances.hpp>
 #include <gridmorph/app/cli/terminal.hpp>
@@ -61,7 +62,7 @@ class Run {
   void measure_baseline();
   /// Morphs by the rules as they are at a moment, as they stand where there is none, and smooths around cells that came
   /// out bad. `times`: gets what it took.
-  RelaxReport morph(Moment const* when = nullptr, StepTimes* times = nullptr);
+  GuardReport morph(Moment const* when = nullptr, StepTimes* times = nullptr);
   /// Makes the meshes of these moments to see where any of them loses its shape: smoothing is then the same in all of
   /// them.
   void freeze_guard(std::vector<Moment> const& moments);
@@ -84,8 +85,8 @@ class Run {
   /// holds, found by halving: at most seven morphs. The result stays as it is.
   ValidShare largest_valid_share();
 
-  [[nodiscard]] AnyMesh const& mesh() const { return *mesh_; }
-  [[nodiscard]] AnyPlan const& plan() const { return *plan_; }
+  [[nodiscard]] LoadedMesh const& mesh() const { return *mesh_; }
+  [[nodiscard]] CasePlan const& plan() const { return *plan_; }
   [[nodiscard]] Coordinates const& morphed() const { return result_.morphed; }
   /// [output] stages of the result.
   void write_stages(std::filesystem::path const& folder) const {
@@ -134,9 +135,9 @@ class Run {
 
   CaseFile const& case_file_;
   Terminal& terminal_;
-  std::unique_ptr<AnyMesh> mesh_;
+  std::unique_ptr<LoadedMesh> mesh_;
   std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
-  std::unique_ptr<AnyPlan> plan_;
+  std::unique_ptr<CasePlan> plan_;
   QualityWanted wanted_;
   bool keep_ = false;
   std::vector<CellField> baseline_measures_;

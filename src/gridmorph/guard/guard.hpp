@@ -1,44 +1,25 @@
-// After a morph: nodes moved where elements came out bad.
+// After a morph: nodes moved where cells came out bad.
 #pragma once
 
-#include <gridmorph/mesh/unstructured_topology.hpp>
-
-#include <vector>
+#include <gridmorph/morph/morph.hpp>
 
 namespace gridmorph {
 
-struct PreparedUnstructured;  ///< MorphPlan::elements()
-
-struct RelaxOptions {
-  double share = 0.2;              ///< an element is bad when its determinant is not above this share of the baseline's
-  int rounds = 6;                  ///< of finding bad elements and smoothing around them
-  int rings = 3;                   ///< of nodes around a bad element that may move in the first round
-  int sweeps = 8;                  ///< over these nodes in the first round
-  std::vector<signed char> signs;  ///< numbering_signs() of the mesh; left empty, they are found again
-};
-
-struct RelaxReport {
-  Index before = 0, after = 0;  ///< bad elements, inverted ones among them
-  int rounds = 0;
+/// What a guard found and left. Bad are cells of blocks with a corner whose scaled Jacobian is below 0.2 and below half
+/// of what it was, and elements whose determinant is not above a fifth of the baseline's; inverted ones among them.
+struct GuardReport {
+  Index before = 0, after = 0;
+  int rounds = 0;                                 ///< of smoothing, of blocks those that were kept
   Index inverted_before = 0, inverted_after = 0;  ///< by the certificate, and not so in the baseline
   Index middles = 0;                              ///< nodes between corners of second-order elements that were pulled
 };
 
-/// Where the 3x3x3 determinant of an element is not above share times the baseline's (or not positive, or negative
-/// where the baseline's is zero), or the certificate finds it inside out (but for cells that were flat and are so
-/// still, kernels/flat_cells.hpp), nodes around move so that the sum of the relative shapes f
-/// (kernels/relative_shape.hpp) of all corners around becomes smaller: coloured Gauss-Seidel sweeps, a step per node
-/// that does not let the sum over its corners grow. Nodes on boundaries that are held and in columns stay. While
-/// elements are inverted, the next round has twice the rings and sweeps. A round that leaves more inverted elements, or
-/// as many and more bad ones, is taken back; those after it, and all in 2-D, smooth displacements: each becomes the
-/// value, at its node, of the affine function that fits its neighbours' best (weights 1 / length of the edge), in
-/// Jacobi sweeps, half as many after each round that is taken back. Elements of second order that are broken by the
-/// nodes between their corners alone have these pulled first, and what is left of them once more at the end: towards
-/// places between those that boundaries give, or straight, as far as they need to (guard/detail/middle_nodes.hpp).
-/// Explicit, the same bits for any number of threads. Cost: the determinants of all elements once, per round those
-/// around the nodes that move; 1 kB and a few microseconds per sweep and node that moves.
-RelaxReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology,
-                               PreparedUnstructured const& prepared, Coordinates& morphed,
-                               RelaxOptions const& options = {});
+/// Moves nodes around bad cells so that the relative shapes of all corners around become better, those of boundaries
+/// that slide on their surfaces; nothing moves where no cell is bad, and nothing gets worse (docs/quality.md: of blocks
+/// smooth_shapes(), of elements relax_bad_elements() has what is done, in which order). mesh: what the plan was made
+/// for; morphed: what a Morpher of it made. Explicit, the same bits for any number of threads; elements work on the
+/// default host instance. Cost: one look at all cells; where some are bad, about 1 kB per node around them and a few
+/// microseconds per sweep and node.
+GuardReport guard(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan, Coordinates& morphed);
 
 }  // namespace gridmorph

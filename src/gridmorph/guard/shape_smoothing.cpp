@@ -293,4 +293,12 @@ ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const
   return ShapeSmoothing(host, prepared, handedness, morphed, options).run();
 }
 
+GuardReport report_of(ShapeSmoothingReport const& report) {
+  return {.before = report.triggered_before,
+          .after = report.triggered_after,
+          .rounds = report.rounds,
+          .inverted_before = report.inverted_before,
+          .inverted_after = report.inverted_after};
+}
+
 }  // namespace gridmorph

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <span>
@@ -42,6 +43,9 @@ struct ShapeSmoothingReport {
   double smallest_before = 1, smallest_after = 1;  ///< scaled Jacobian, over the corners that could change
   int rounds = 0;                                  ///< that were kept
 };
+
+/// The same as guard() reports it.
+GuardReport report_of(ShapeSmoothingReport const& report);
 
 /// What a morph lost of shapes: what smooth_shapes() starts from. Cost: one look at all cells.
 FrozenSmoothing lost_shapes(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,

@@ -7,6 +7,7 @@
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 #include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
@@ -49,7 +50,8 @@ std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, doubl
 
 }  // namespace
 
-SmoothingRecord::SmoothingRecord(MorphPlan const& plan) : blocks_(plan.blocks()), elements_(plan.elements()) {}
+SmoothingRecord::SmoothingRecord(MorphPlan const& plan)
+    : blocks_(PlanAccess::blocks(plan)), elements_(PlanAccess::elements(plan)) {}
 SmoothingRecord::SmoothingRecord(PreparedMorph const& prepared) : blocks_(&prepared) {}
 
 void SmoothingRecord::add(std::span<Vec3 const> boundary, Coordinates const& plain, Coordinates const& guarded) {
@@ -181,37 +183,28 @@ Coordinates copy_of(Coordinates const& x) {
 
 }  // namespace
 
-MorphPlan freeze_guard(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
+MorphPlan freeze_guard(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
                        std::span<std::vector<Vec3> const> boundaries, FreezeOptions const& options) {
   SmoothingRecord record(plan);
-  Morpher<Exec> const morpher(Exec(), plan.with(nullptr), mesh.coordinates);
+  Morpher<Exec> const morpher(Exec(), plan.with(nullptr), mesh.mesh().coordinates);
   Coordinates plain(mesh.n_nodes());
-  auto const morph = [&](std::vector<Vec3> const& boundary) { apply_on_host(morpher, boundary, plain); };
-  auto const record_all = [&](auto const& guard) {
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan);
+  // Smoothed alike in all of them, meshes between those recorded follow.
+  bool const alike = blocks != nullptr && boundaries.size() > 1;
+  FrozenSmoothing lost;
+  if (alike)
     for (std::vector<Vec3> const& boundary : boundaries) {
-      morph(boundary);
-      Coordinates guarded = copy_of(plain);
-      guard(guarded);
-      record.add(boundary, plain, guarded);
+      apply_on_host(morpher, boundary, plain);
+      lost.join(lost_shapes(host, *blocks, mesh.handedness(), plain));
     }
-  };
-  if (PreparedMorph const* const blocks = plan.blocks()) {
-    std::vector<int> const handedness = zone_handedness(Exec(), mesh, views(mesh.coordinates));
-    FrozenSmoothing lost;
-    if (boundaries.size() > 1)
-      for (std::vector<Vec3> const& boundary : boundaries) {
-        morph(boundary);
-        lost.join(lost_shapes(host, *blocks, handedness, plain));
-      }
-    record_all([&](Coordinates& x) {
-      if (boundaries.size() > 1)
-        (void)smooth_frozen(host, *blocks, handedness, x, lost);
-      else
-        (void)smooth_shapes(host, *blocks, handedness, x);
-    });
-  } else {
-    UnstructuredTopology const topology = make_topology(host, mesh);
-    record_all([&](Coordinates& x) { (void)relax_bad_elements(mesh, topology, *plan.elements(), x); });
+  for (std::vector<Vec3> const& boundary : boundaries) {
+    apply_on_host(morpher, boundary, plain);
+    Coordinates guarded = copy_of(plain);
+    if (alike)
+      (void)smooth_frozen(host, *blocks, mesh.handedness(), guarded, lost);
+    else
+      (void)guard(host, mesh, plan, guarded);
+    record.add(boundary, plain, guarded);
   }
   return plan.with(record.map(options));
 }

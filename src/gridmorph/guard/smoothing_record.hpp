@@ -1,8 +1,7 @@
 // What a guard made of some displacements of a plan, frozen into the plan.
 #pragma once
 
-#include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/morph/morph.hpp>
 
 #include <memory>
 #include <span>
@@ -11,7 +10,6 @@
 
 namespace gridmorph {
 
-class MorphPlan;
 struct PreparedMorph;         ///< plan/prepare.hpp
 struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 struct SmoothingMap;          ///< plan/smoothing_map.hpp
@@ -22,8 +20,8 @@ struct FreezeOptions {
   double least_share = 1e-3;
 };
 
-/// Records boundary displacements u_k with the meshes that a plan and then a guard made of them: smooth_shapes(),
-/// smooth_frozen(), relax_bad_elements(), morph_in_steps(), or the caller's own. map() is the linear function of u that
+/// Records boundary displacements u_k with the meshes that a plan and then a guard made of them: guard(),
+/// smooth_frozen(), morph_in_steps(), or the caller's own. map() is the linear function of u that
 /// fits the guard's shifts s_k best:
 ///
 ///   shift(u) = sum over d of (g_d . u) s_d,   the smallest sum over k of |shift(u_k) - s_k|^2, zero for u at right
@@ -64,11 +62,10 @@ class SmoothingRecord {
   std::vector<Recorded> recorded_;
 };
 
-/// The plan with what the guard makes of these boundary displacements as a part of it: smooth_frozen() around all cells
-/// of blocks that lose their shape in any of the meshes, with one displacement smooth_shapes(); relax_bad_elements().
-/// Mesh: the plan's. Throws as SmoothingRecord::add(). Cost: a morph, a look at all cells and a smoothing per
-/// displacement.
-MorphPlan freeze_guard(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
+/// The plan with what guard() makes of these boundary displacements as a part of it; of several displacements of blocks
+/// smooth_frozen() around all cells that lose their shape in any of the meshes. mesh: what the plan was made for.
+/// Throws as SmoothingRecord::add(). Cost: a morph, a look at all cells and a smoothing per displacement.
+MorphPlan freeze_guard(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
                        std::span<std::vector<Vec3> const> boundaries, FreezeOptions const& options = {});
 
 }  // namespace gridmorph

@@ -1,7 +1,9 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/motion_path.hpp>
+#include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/given_slip.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -17,7 +19,8 @@ using Exec = Kokkos::DefaultHostExecutionSpace;
 
 Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topology,
                            BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
-                           std::vector<Vec3> const& displacement, StepOptions const& options) {
+                           std::vector<Vec3> const& displacement, StepOptions const& options,
+                           std::vector<signed char> const& signs) {
   if (options.plan.elements.background)
     throw PlanError(
         "a background mesh of your own stands still while the walls move: it serves one step alone; leave it out to "
@@ -38,7 +41,7 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
     apply_on_host(Morpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more
     // bad elements.
-    (void)relax_bad_elements(now, topology, step_plan, moved, options.relax);
+    (void)relax_bad_elements(now, topology, step_plan, moved, {.signs = signs});
     now.coordinates = moved;
   }
   Coordinates moved = now.coordinates;
@@ -48,6 +51,15 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
     if (std::binary_search(known.begin(), known.end(), prepared.plan.copied[k]))
       moved.set(prepared.plan.copies[k], moved[prepared.plan.copied[k]]);
   return moved;
+}
+
+Coordinates morph_in_steps(IndexedMesh const& mesh, MorphPlan const& plan, std::vector<Vec3> const& displacement,
+                           StepOptions const& options) {
+  PreparedUnstructured const* const prepared = PlanAccess::elements(plan);
+  if (prepared == nullptr)
+    throw PlanError("gridmorph::morph_in_steps: the plan is of a mesh of blocks, whose motions are made in one step");
+  return morph_in_steps(mesh.mesh(), mesh.topology(), mesh.face_patches(), *prepared, displacement, options,
+                        mesh.signs());
 }
 
 }  // namespace gridmorph

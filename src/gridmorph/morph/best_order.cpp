@@ -32,10 +32,6 @@ int close_sample(Mesh const& mesh) {
   return n <= few ? 1 : n <= many ? 4 : 8;
 }
 
-bool is_at_rest(std::span<Vec3 const> boundary) {
-  return std::ranges::all_of(boundary, [](Vec3 const& u) { return u == Vec3{}; });
-}
-
 class Search {
  public:
   Search(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary)
@@ -214,6 +210,10 @@ class Search {
 };
 
 }  // namespace
+
+bool is_at_rest(std::span<Vec3 const> boundary) {
+  return std::ranges::all_of(boundary, [](Vec3 const& u) { return u == Vec3{}; });
+}
 
 FoundOrder find_order(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary) {
   VolumeOptions const& options = prepared.options.volume;

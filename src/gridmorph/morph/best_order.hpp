@@ -38,6 +38,9 @@ FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& pre
 Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
                            Prediction const& some);
 
+/// Whether no boundary node is displaced.
+bool is_at_rest(std::span<Vec3 const> boundary);
+
 /// Where VolumeOptions leave order and law to the library: whether predict_closely() finds inverted cells. Not where
 /// nothing moves.
 bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary);

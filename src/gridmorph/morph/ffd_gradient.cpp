@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/morph/ffd_gradient.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
 #include <gridmorph/motion/goes_along.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
@@ -25,9 +26,9 @@ struct Asked {
 
 Asked asked_by(MorphPlan const& plan) {
   static std::vector<Mat3> const none;
-  if (auto const* blocks = plan.blocks())
+  if (auto const* blocks = PlanAccess::blocks(plan))
     return {blocks->mesh, blocks->planned.boundary, blocks->surface, blocks->plan().rotations};
-  auto const& boundary = plan.elements()->boundary;
+  auto const& boundary = PlanAccess::elements(plan)->boundary;
   return {boundary.motion->boundary().mesh(), boundary.requests, *boundary.motion, none};
 }
 

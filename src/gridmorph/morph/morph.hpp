@@ -5,16 +5,23 @@
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
+#include <gridmorph/quality/indexed_mesh.hpp>
 
+#include <Kokkos_Core.hpp>
+
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
 
-struct PreparedMorph;
-struct PreparedUnstructured;
+class BoundaryMotion;
+struct PlanAccess;
 struct SmoothingMap;
+struct Trim;
 
 /// A patch that gives a boundary node of a plan its displacement, and where the node lies there.
 struct BoundaryPlace {
@@ -27,13 +34,43 @@ struct BoundaryPlace {
   Mat3 rotation{};
 };
 
+/// The motions that one plan is to serve, one after another: rules for the same patches, whose displacements alone
+/// differ. A plan reckons with what comes out worst of them, of long series with some, evenly spaced.
+struct MotionSeries {
+  int steps = 0;                                ///< 0: there is no series, but the motion that the rules say
+  std::function<Motion(int step)> motion = {};  ///< from step 0 on
+};
+
+/// Of 0 ... n - 1 all, or `most` of them, spread evenly, the first and the last one among them.
+std::vector<int> some_steps(int n, int most);
+
+/// What lies near moving walls.
+struct NearCells {
+  /// (n_cells), nonzero near them; empty: all are far.
+  Kokkos::View<std::uint8_t const*, Kokkos::HostSpace> cells = {};
+  std::vector<int> walls = {};  ///< numbers of patches that have a near field of their own by name, or drive
+};
+
+/// The time that a part of planning took.
+struct PlanSeconds {
+  std::string part;  ///< "topology", "rules", "plan", "prediction", "order"
+  double seconds = 0;
+};
+
 /// How the nodes of a mesh follow its boundary: depends on the baseline and on which patches the rules move, never on
 /// how far. Made once on the host, put on an execution space by Morpher. Copies share their insides.
 class MorphPlan {
  public:
   /// Connects the zones, completes and checks the boundary, resolves the rules and plans, for blocks or for elements.
-  /// Throws MeshError, MotionError or PlanError. The mesh's coordinates are read here only.
-  MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
+  /// Where VolumeOptions leave the order of chains to the library, or ask for a predicted one, the displacements of
+  /// `motion`, or of up to eight steps of `series` (a hundred where asked for), are looked at; of elements those of up
+  /// to a thousand say how far the near field reaches. A motion that cannot be made is refused by
+  /// boundary_displacement(), or here where the order was asked for. Throws MeshError, MotionError or PlanError. The
+  /// mesh's coordinates are read here only.
+  MorphPlan(HostInstance const& host, IndexedMesh const& mesh, Motion const& motion, PlanOptions const& options = {},
+            MotionSeries const& series = {});
+  MorphPlan(HostInstance const& host, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {},
+            MotionSeries const& series = {});
   /// On the default instance of the default host space.
   MorphPlan(Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
 
@@ -44,12 +81,24 @@ class MorphPlan {
   /// PrescribedRule this says which of a solver's surface values go where. Cost O(boundary nodes, log).
   [[nodiscard]] std::vector<BoundaryPlace> boundary_places() const;
   /// What the rules give them, each in the frame of its node; zero where a PrescribedRule leaves it to the caller.
+  /// Throws MotionError where the rules cannot be evaluated. Evaluated when it is first asked for, by any thread.
   [[nodiscard]] std::vector<Vec3> const& boundary_displacement() const;
   /// What other rules give them: the same rules for the same patches, whose displacements alone differ. Throws
   /// MotionError. Cost: an evaluation of the rules at the boundary's nodes; nothing is planned.
   [[nodiscard]] std::vector<Vec3> boundary_displacement(Motion const& motion) const;
   /// Defaults taken and facts found on the way, for users.
   [[nodiscard]] std::vector<std::string> notes() const;
+  /// The rules on the boundary (motion/boundary_motion.hpp), with the patches that planning added.
+  [[nodiscard]] BoundaryMotion const& rules() const;
+  /// The near field of blocks and the walls that have one by name; near and partially wrapped elements and the walls
+  /// that drive them. Cost: O(cells).
+  [[nodiscard]] NearCells near_cells() const;
+  /// How far displacements of the boundary lead off slip surfaces (plan/trim_note.hpp), and so are undone. Cost:
+  /// O(boundary nodes).
+  [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary) const;
+  /// The same where `motion` gave them, in words of its rules.
+  [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary, Motion const& motion) const;
+  [[nodiscard]] std::vector<PlanSeconds> seconds() const;
 
   /// The same plan, and what a guard did to some of its meshes as a linear part of every morph
   /// (guard/smoothing_record.hpp).
@@ -57,12 +106,11 @@ class MorphPlan {
   /// Null where the plan carries none.
   [[nodiscard]] std::shared_ptr<SmoothingMap const> const& smoothing() const { return smoothing_; }
 
-  /// For the library: of the two one is null.
-  [[nodiscard]] PreparedMorph const* blocks() const;
-  [[nodiscard]] PreparedUnstructured const* elements() const;
-
  private:
+  friend struct PlanAccess;
   struct State;
+  explicit MorphPlan(std::shared_ptr<State const> state) : state_(std::move(state)) {}
+
   std::shared_ptr<State const> state_;
   std::shared_ptr<SmoothingMap const> smoothing_;
 };

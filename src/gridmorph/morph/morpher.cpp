@@ -4,6 +4,7 @@
 #include <gridmorph/morph/detail/with_axes.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/stages/run_stages.hpp>
 #include <gridmorph/morph/stages/stage_list.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
@@ -191,8 +192,9 @@ Morpher<Exec>::Morpher(Exec const& exec, UnstructuredPlan const& plan, In const&
 
 template <class Exec>
 Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
-    : Morpher(plan.blocks() ? Morpher(exec, plan.blocks()->plan(), baseline, with_smoothing(options, plan))
-                            : Morpher(exec, plan.elements()->plan, baseline, with_smoothing(options, plan))) {}
+    : Morpher(PlanAccess::blocks(plan)
+                  ? Morpher(exec, PlanAccess::blocks(plan)->plan(), baseline, with_smoothing(options, plan))
+                  : Morpher(exec, PlanAccess::elements(plan)->plan, baseline, with_smoothing(options, plan))) {}
 
 template <class Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {

@@ -4,6 +4,7 @@
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/plan/coarse_plan.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
@@ -35,6 +36,34 @@ class Predictor {
   PreparedMorph const& prepared_;
   CoarsePlanner planner_;
   std::vector<int> handedness_;  ///< per zone
+};
+
+/// Of a series of motions at most so many are predicted, spread evenly: they take the time of a plan.
+inline constexpr int most_predicted = 100;
+
+/// The worst of several motions of one plan, by the smallest scaled Jacobian. Borrows what was prepared.
+class WorstPrediction {
+ public:
+  WorstPrediction(HostInstance const& host, PreparedMorph const& prepared) : predictor_(host, prepared, {}) {}
+
+  /// boundary: displacements of Plan::boundary_nodes at that step.
+  void look_at(int step, std::vector<Vec3> boundary) {
+    Prediction now = predictor_.predict(boundary);
+    if (!boundary_.empty() && !(now.all.scaled_jacobian.value < prediction_.all.scaled_jacobian.value)) return;
+    prediction_ = std::move(now);
+    step_ = step;
+    boundary_ = std::move(boundary);
+  }
+
+  [[nodiscard]] Prediction const& prediction() const { return prediction_; }
+  [[nodiscard]] int step() const { return step_; }
+  [[nodiscard]] std::vector<Vec3> const& boundary() const { return boundary_; }
+
+ private:
+  Predictor predictor_;
+  Prediction prediction_;
+  int step_ = 0;
+  std::vector<Vec3> boundary_;
 };
 
 }  // namespace gridmorph

@@ -1,59 +1,161 @@
 #include <gridmorph/wheel/wheel_motion.hpp>
 
+#include <gridmorph/boundary/boundary.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/wheel/detail/append_notes.hpp>
 #include <gridmorph/wheel/open_passage.hpp>
 
-#include <memory>
+#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace gridmorph {
 
-WheelMotion::WheelMotion(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
+namespace {
+
+/// The sides of rows whose blades differ move as the rules say, or not at all.
+void refuse_free_sides(Mesh const& sector, PassageLinks const& links, WheelRows const& rows,
+                       std::vector<char> const& open, NodeGraph const& graph, std::vector<Index32> const& known) {
+  Problems problems;
+  std::set<int> reported;
+  for (PassageLink const& link : links.all) {
+    if (!link.periodic || open[rows.row_of_zone[link.zone]] == 0) continue;
+    bool const all = std::all_of(link.pairs.begin(), link.pairs.end(), [&](auto const& pair) {
+      return std::binary_search(known.begin(), known.end(), graph.representative[std::size_t(pair[0])]);
+    });
+    if (!all && reported.insert(link.connection).second) problems.add(no_rule_for_side(sector, link));
+  }
+  problems.throw_if_any<MotionError>();
+}
+
+}  // namespace
+
+WheelMotion::WheelMotion(IndexedMesh sector, PassageLinks const& links, WheelRows const& rows,
                          std::vector<Motion> const& motions, SameRules same_rules, PlanOptions const& options,
-                         std::vector<WheelRowBlades> const& blades)
-    : same_rules_(std::move(same_rules)), used_(used_motions(blades)) {
+                         std::vector<WheelRowBlades> const& blades, WheelTimes const& times)
+    : sector_(std::move(sector)), same_rules_(std::move(same_rules)), used_(used_motions(blades)) {
   refuse_regions(motions);
-  auto const open = open_rows(blades);
-  auto const boundary = std::make_shared<Boundary const>(sector);
+  Asked const asked{links, rows, motions, options, blades, times, open_rows(blades)};
+  if (sector_.is_structured())
+    plan_blocks(asked);
+  else
+    plan_elements(asked);
+}
 
-  ResolvedMotion const resolved = resolve(sector, motions[used_.front()]);
-  detail::append_notes(notes_, resolved.notes);
-  OpenedPassage opened = open_passage(sector, links, rows, resolved, open);
-  Links const opened_links = connect(opened.mesh, options.topology);
-  planned_ = make_plan({}, opened.mesh, opened_links, BoundaryMotion(opened.mesh, opened.motion), options);
-  detail::append_notes(notes_, planned_.plan.notes);
-  opened_ = std::move(opened.mesh);
-
+template <class Make>
+void WheelMotion::add_rules(Make const& make) {
   for (int const m : used_) {
     int const rules = same_rules_[m];
     if (rules_.contains(rules)) continue;
-    auto const& surface =
-        rules_.emplace(rules, BoundaryMotion(boundary, resolve(sector, motions[rules]))).first->second;
-    detail::append_notes(notes_, surface.notes());
+    auto const& surface = rules_.emplace(rules, make(rules)).first->second;
+    detail::append_notes(notes_, surface->notes());
   }
-  auto const shares = blade_shares(*boundary, links, rows, resolved, open, one_of_place(links, rows), planned_.boundary,
-                                   planned_.plan.boundary_nodes);
-  std::vector<PassageMotions::Node> nodes;
-  for (std::size_t n = 0; n < shares.size(); ++n) {
-    Index const node = planned_.plan.boundary_nodes[n];
-    nodes.push_back({sector.coordinates[node], rows.row_of_zone[sector.zone_of(node)], shares[n]});
-  }
-  passages_ = PassageMotions(rows, blades, std::move(nodes), {});
-  move(motions);
 }
 
-void WheelMotion::move(std::vector<Motion> const& motions) {
+void WheelMotion::add_passages(Asked const& asked, std::vector<Index> const& nodes,
+                               std::vector<BladeShare> const& shares) {
+  std::vector<PassageMotions::Node> shared;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    shared.push_back(
+        {sector_.mesh().coordinates[nodes[n]], asked.rows.row_of_zone[sector_.mesh().zone_of(nodes[n])], shares[n]});
+  passages_ = PassageMotions(asked.rows, asked.blades, std::move(shared), {});
+  move(asked.motions);
+}
+
+void WheelMotion::plan_blocks(Asked const& asked) {
+  Mesh const& sector = sector_.mesh();
+  auto const boundary = std::make_shared<Boundary const>(sector);
+  ResolvedMotion const resolved = resolve(sector, asked.motions[used_.front()]);
+  detail::append_notes(notes_, resolved.notes);
+  OpenedPassage opened = open_passage(sector, asked.links, asked.rows, resolved, asked.open);
+  Links links = connect(opened.mesh, asked.options.topology);
+  BoundaryMotion surface(opened.mesh, opened.motion);
+  PlannedMorph made = make_plan({}, opened.mesh, links, surface, asked.options);
+  detail::append_notes(notes_, made.plan.notes);
+  requests_ = made.boundary;
+  rotations_ = made.plan.rotations;
+  plan_ = PlanAccess::of(
+      PreparedMorph{std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), {}, asked.options});
+
+  add_rules([&](int m) {
+    return std::make_shared<BoundaryMotion const>(boundary, resolve(sector, asked.motions[std::size_t(m)]));
+  });
+  auto const nodes = plan_->boundary_nodes();
+  add_passages(asked, nodes,
+               blade_shares(*boundary, asked.links, asked.rows, resolved, asked.open,
+                            one_of_place(asked.links, asked.rows), requests_, nodes));
+}
+
+void WheelMotion::plan_elements(Asked const& asked) {
+  Mesh const& sector = sector_.mesh();
+  PlanOptions options = asked.options;
+  bool const one = used_.size() == 1 && asked.times.steps == 0;
+  Motion const& first = asked.motions[used_.front()];
+  NodeGraph graph = make_node_graph(sector, sector_.topology().elements_of_nodes, row_of_nodes(sector, first));
+  BoundaryConditions conditions =
+      boundary_conditions(sector, sector_.topology(), sector_.face_patches(), graph, first, options.elements.walls,
+                          one && options.elements.motion < 0 ? Displacements::of_the_rules : Displacements::any);
+  refuse_free_sides(sector, asked.links, asked.rows, asked.open, graph, conditions.known);
+
+  requests_ = conditions.requests;
+  add_rules([&](int m) {
+    return m == used_.front() ? conditions.motion : boundary_motion(conditions, asked.motions[std::size_t(m)]);
+  });
+  std::vector<Index> const known(conditions.known.begin(), conditions.known.end());
+  add_passages(asked, known,
+               blade_shares(
+                   conditions.motion->boundary(), asked.links, asked.rows, conditions.motion->motion(), asked.open,
+                   [&](Index n) { return Index(graph.representative[std::size_t(n)]); }, requests_, known));
+
+  auto most = largest_of(asked, options);
+  PreparedUnstructured prepared = prepare({}, sector, sector_.topology(), sector_.face_patches(), std::move(graph),
+                                          std::move(conditions), options, std::move(most));
+  detail::append_notes(notes_, prepared.notes);
+  plan_ = PlanAccess::of(std::move(prepared));
+}
+
+std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, PlanOptions& options) const {
+  if (options.elements.motion >= 0) return {};
+  std::optional<std::vector<Vec3>> most;
+  double largest = -1;
+  for (int p = 0; p < passages_.n_passages(); ++p) {
+    if (passages_.first_alike(p) < p) continue;
+    auto displacement = passages_.boundary(p);
+    double const now = largest_norm(displacement);
+    if (now <= largest) continue;
+    largest = now;
+    most = std::move(displacement);
+  }
+  if (used_.size() == 1 && asked.times.steps == 0) return most;
+  for (int step = 0; step < asked.times.steps; ++step)
+    for (auto const& values : values_of(asked.times.motions(step))) largest = std::max(largest, largest_norm(values));
+  options.elements.motion = largest;  // what turns leave of it differs from blade to blade
+  return {};
+}
+
+Mesh const& WheelMotion::asked_mesh() const {
+  PreparedMorph const* const blocks = plan_ ? PlanAccess::blocks(*plan_) : nullptr;
+  return blocks != nullptr ? blocks->mesh : sector_.mesh();
+}
+
+std::vector<std::vector<Vec3>> WheelMotion::values_of(std::vector<Motion> const& motions) const {
   std::vector<std::vector<Vec3>> values(motions.size());
   for (int const m : used_) values[m] = displacement(m, motions[m]);
-  passages_.take(std::move(values));
-}
-
-std::vector<Trim> WheelMotion::trims(std::vector<Vec3> const& boundary) const {
-  return gridmorph::trims(opened_, planned_.plan, planned_.boundary, rules_.at(same_rules_[used_.front()]), boundary);
+  return values;
 }
 
 std::vector<Vec3> WheelMotion::displacement(int m, Motion const& motion) const {
-  return evaluate(opened_, planned_.boundary, rules_.at(same_rules_[m]).with(motion), planned_.plan.rotations);
+  return evaluate(asked_mesh(), requests_, rules_.at(same_rules_[m])->with(motion), rotations_);
+}
+
+std::vector<Trim> WheelMotion::trims(std::vector<Vec3> const& boundary) const {
+  PreparedMorph const* const blocks = PlanAccess::blocks(*plan_);
+  if (blocks == nullptr) return plan_->trims(boundary);
+  // In words of the rules: those of a plan that was opened give no values.
+  return gridmorph::trims(blocks->mesh, blocks->plan(), requests_, *rules_.at(same_rules_[used_.front()]), boundary);
 }
 
 }  // namespace gridmorph

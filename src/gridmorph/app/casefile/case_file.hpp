@@ -78,14 +78,6 @@ struct SequenceOptions {
     return times.empty() ? period * periods_at(step) : times[std::size_t(step)];
   }
   [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
-  /// All steps, of longer sequences `most` of them, spread evenly, the first and the last one among them: what is
-  /// looked at ahead of time.
-  [[nodiscard]] std::vector<int> some_steps(int most) const {
-    std::vector<int> out;
-    int const n = std::min(steps, most);
-    for (int k = 0; k < n; ++k) out.push_back(n < 2 ? k : int(std::int64_t(k) * (steps - 1) / (n - 1)));
-    return out;
-  }
 };
 
 /// [[clearance]]: how far the tips of blades are from a wall.

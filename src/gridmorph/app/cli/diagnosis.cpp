@@ -114,11 +114,11 @@ MeshForMessages for_messages(Mesh const& mesh) {
   return out;
 }
 
-MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary) {
+MeshForMessages for_messages(Mesh const& mesh, Boundary const& boundary) {
   MeshForMessages out{mesh, mesh.coordinates, mesh.size(), {}, {}, element_corners, &mesh};
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     out.patch_names.push_back(name_of(mesh.patches[p]));
-    auto const& nodes = boundary.nodes_of(int(p));
+    auto const& nodes = boundary.surface(int(p)).nodes;
     out.patch_nodes.emplace_back(nodes.begin(), nodes.end());
   }
   return out;

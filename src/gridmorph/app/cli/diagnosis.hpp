@@ -3,7 +3,7 @@
 
 #include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/quality/quality.hpp>
 
 #include <optional>
@@ -24,8 +24,8 @@ struct MeshForMessages {
 };
 
 MeshForMessages for_messages(Mesh const& mesh);
-/// `boundary`: of the plan of `mesh`.
-MeshForMessages for_messages(Mesh const& mesh, BoundaryConditions const& boundary);
+/// The same of elements. boundary: of `mesh`.
+MeshForMessages for_messages(Mesh const& mesh, Boundary const& boundary);
 
 /// The worst of the cells that a morph inverted: "the worst is zone 'A' cell (i 3, j 1, k 7) at (1, 2, 3), 0.002 from
 /// patch 'blade' in the baseline: its smallest corner Jacobian is -35.2 times the largest it had". Empty where none is.

@@ -1,10 +1,9 @@
-#include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/casefile/formula.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
-#include <gridmorph/app/element_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
@@ -177,7 +176,7 @@ int move_blocks(CommandLine const& options, Terminal& terminal, Mesh const& mesh
   ElementFillet const result = make_fillet(hexahedra, topology, find_face_patches(hexahedra, topology), wanted);
   double const seconds = watch.lap();
   terminal.progress("measuring quality");
-  BlockMesh const before(mesh);
+  LoadedMesh const before(mesh);
   Coordinates const& morphed = result.mesh.coordinates;
   QualityReport const quality = before.measure({.morphed = &morphed});
   if (any_inverted(quality)) return refuse(options, terminal, quality, remedy_of(result));
@@ -207,7 +206,7 @@ int fill_blocks(CommandLine const& options, Terminal& terminal) {
   double const seconds = watch.lap();
 
   terminal.progress("checking connections, measuring quality");
-  BlockMesh const after(result.split.mesh);
+  LoadedMesh const after(result.split.mesh);
   Mesh checked = after.mesh();
   (void)connect_and_check(checked, options.topology);
   QualityReport const quality = after.measure({});
@@ -221,23 +220,23 @@ int fill_blocks(CommandLine const& options, Terminal& terminal) {
   json["wall_deviation"] = result.wall_deviation;
   json["zones"] = result.split.mesh.zones.size();
   json["cells"] = result.split.mesh.n_cells();
-  return conclude(terminal, std::move(json), shortfalls_of(BlockMesh(mesh).measure({}), quality));
+  return conclude(terminal, std::move(json), shortfalls_of(LoadedMesh(mesh).measure({}), quality));
 }
 
 int fill_elements(CommandLine const& options, Terminal& terminal) {
-  ElementMesh const before(options.input, {}, options.leave_out);
-  Mesh const& mesh = before.mesh;
+  LoadedMesh const before(options.input, {}, options.leave_out);
+  Mesh const& mesh = before.mesh();
   if (mesh.dimension != 3)
     throw MeshError(options.input.string() + ": a mesh of two dimensions has no corners to fill");
-  throw_if_any(before.problems);
+  throw_if_any(before.problems());
   Stopwatch watch;
   terminal.progress("filling corners");
-  ElementFillet const result = make_fillet(mesh, before.topology, before.face_patches, options_of(options, mesh));
+  ElementFillet const result = make_fillet(mesh, before.indexed().topology(), before.indexed().face_patches(), options_of(options, mesh));
   double const seconds = watch.lap();
 
   terminal.progress("checking the elements, measuring quality");
-  ElementMesh const after(result.mesh);
-  throw_if_any(after.problems);
+  LoadedMesh const after(result.mesh);
+  throw_if_any(after.problems());
   QualityReport const quality = after.measure({});
   if (any_inverted(quality)) return refuse(options, terminal, quality, remedy_of(result));
   terminal.progress("writing " + options.output->string());

@@ -1,4 +1,3 @@
-#include <gridmorph/app/block_mesh.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/run_files.hpp>

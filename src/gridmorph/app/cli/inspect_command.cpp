@@ -1,4 +1,4 @@
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
@@ -71,25 +71,25 @@ int run_inspect_command(CommandLine const& options, Terminal& terminal) {
   if (options.suggest && options.match && !options.write_side_file)
     throw ConfigError("--suggest with --match: a case file finds the interfaces in a side file; add --write-side-file");
   terminal.progress("reading " + options.input.string());
-  auto const mesh = load(file, options.side_file);
+  LoadedMesh mesh(file.path, options.side_file, file.leave_out);
   if (options.match || options.write_side_file) {
     terminal.progress("matching points");
     auto const present = options.side_file ? options.side_file : find_side_file(options.input);
     std::string const before = options.write_side_file && present ? io::read_file(present->string()) : std::string();
     if (present) io::FilesRead::release(*present);
-    mesh->match({options.match_tolerance, options.match_periodic, options.write_side_file, before});
+    mesh.match({options.match_tolerance, options.match_periodic, options.write_side_file, before});
   }
   terminal.progress("looking at boundaries and connections");
-  MeshSummary const summary = mesh->summary();
+  MeshSummary const summary = mesh.summary();
   if (options.suggest) return suggest(options, summary, terminal);
   terminal.progress("measuring quality");
-  QualityReport const quality = mesh->measure({});
+  QualityReport const quality = mesh.measure({});
   if (options.json) {
-    nlohmann::json json = mesh->json(summary, snippet_options(options));
+    nlohmann::json json = mesh.json(summary, snippet_options(options));
     json["quality"] = quality_json(quality, {}, {});
     terminal.document(json);
   } else {
-    terminal.result(mesh->text(summary, format_table(quality), snippet_options(options)));
+    terminal.result(mesh.text(summary, format_table(quality), snippet_options(options)));
     if (options.write_side_file) terminal.say(fmt::format("wrote {}\n", options.write_side_file->string()));
   }
   return done;

@@ -1,4 +1,4 @@
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
@@ -9,21 +9,21 @@ namespace gridmorph::cli {
 
 int run_quality_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("reading " + options.input.string());
-  auto const mesh = load(options.input, {}, options.leave_out);
+  LoadedMesh const mesh(options.input, {}, options.leave_out);
   std::optional<Coordinates> morphed;
   if (options.second) {
     terminal.progress("reading " + options.second->string());
-    morphed = mesh->coordinates_of(*options.second, options.leave_out);
+    morphed = mesh.coordinates_of(*options.second, options.leave_out);
   }
   terminal.progress("measuring quality");
   QualityWanted wanted;
   wanted.fast = options.quality == "fast";
   QualityReport before;
-  if (!wanted.fast || !morphed) before = mesh->measure(wanted);
+  if (!wanted.fast || !morphed) before = mesh.measure(wanted);
   std::optional<QualityReport> after;
   if (morphed) {
     wanted.morphed = &*morphed;
-    after = mesh->measure(wanted);
+    after = mesh.measure(wanted);
   }
   QualityThresholds const thresholds;
   terminal.document(quality_json(before, after, thresholds));

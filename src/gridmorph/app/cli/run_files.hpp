@@ -2,7 +2,7 @@
 // output.
 #pragma once
 
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 
 #include <filesystem>
 #include <optional>

@@ -34,7 +34,7 @@ std::filesystem::path step_path(SequenceOptions const& options, int step) {
   return options.output.parent_path() / name;
 }
 
-StepFiles::StepFiles(CaseFile const& case_file, AnyMesh const& mesh)
+StepFiles::StepFiles(CaseFile const& case_file, LoadedMesh const& mesh)
     : case_file_(case_file), mesh_(mesh), format_(mesh_format(case_file.input.string())) {
   auto const& options = *case_file.sequence;
   if (!one_file_per_step(options)) series_.emplace(mesh.series(case_file.input, options.output, times_of(options)));

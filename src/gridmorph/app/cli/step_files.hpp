@@ -1,7 +1,7 @@
 // The meshes of a sequence on disk: one file per step, or one file with a series. All of them appear, or none.
 #pragma once
 
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/io/output_file.hpp>
 
 #include <deque>
@@ -25,7 +25,7 @@ void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& opti
 class StepFiles {
  public:
   /// `mesh` must outlive the files.
-  StepFiles(CaseFile const& case_file, AnyMesh const& mesh);
+  StepFiles(CaseFile const& case_file, LoadedMesh const& mesh);
   StepFiles(StepFiles const&) = delete;
   StepFiles& operator=(StepFiles const&) = delete;
   ~StepFiles();
@@ -38,7 +38,7 @@ class StepFiles {
 
  private:
   CaseFile const& case_file_;
-  AnyMesh const& mesh_;
+  LoadedMesh const& mesh_;
   MeshFormat format_;
   int steps_ = 0;                     ///< folders written
   std::deque<io::OutputFile> files_;  ///< of the steps so far

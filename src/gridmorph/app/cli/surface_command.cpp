@@ -1,4 +1,4 @@
-#include <gridmorph/app/any_mesh.hpp>
+#include <gridmorph/app/loaded_mesh.hpp>
 #include <gridmorph/app/cli/commands.hpp>
 #include <gridmorph/app/cli/output_files.hpp>
 #include <gridmorph/app/cli/run_files.hpp>
@@ -46,7 +46,7 @@ int run_surface_command(CommandLine const& options, Terminal& terminal) {
   if (nodes && (options.split != 1 || options.ascii))
     throw ConfigError("--split and --ascii are for STL; leave them out when nodes are written as CSV");
   terminal.progress("reading " + options.input.string());
-  PatchesAsSurface const surface = load(file, {})->surface(options.patches, !nodes, options.split);
+  PatchesAsSurface const surface = LoadedMesh(file.path, {}, file.leave_out).surface(options.patches, !nodes, options.split);
   if (nodes) {
     PendingFile(*options.output, csv_text(surface.nodes)).commit();
     terminal.say(fmt::format("wrote {}: {} nodes of {} patches\n", output, surface.nodes.size(), surface.patches));

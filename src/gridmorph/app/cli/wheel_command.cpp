@@ -37,7 +37,7 @@ int run_wheel_command(CommandLine const& options, Terminal& terminal) {
 
   std::optional<RunPage> page;
   if (page_file) page.emplace(case_file, options.typed);
-  WheelRun run(case_file, file.kind, terminal);
+  WheelRun run(case_file, terminal);
   if (page) run.keep_worst();
   run.prepare();
   MeshFileWriter writer(output.string(), run.wheel().mesh);

@@ -42,9 +42,9 @@ PatchRoles roles_of_passage(Mesh const& mesh, Motion const& motion) {
 void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page) {
   Mesh const& mesh = run.sector().mesh();
   WorstPassage const& worst = run.worst();
-  page.begin_passage(run.sector().pictures(), roles_of_passage(mesh, case_file.motion), mesh.coordinates);
+  page.begin_passage(run.sector().loaded().pictures(), roles_of_passage(mesh, case_file.motion), mesh.coordinates);
   page.finish_passage({mesh.coordinates, worst.morphed, run.near(), {}},
-                      result.passages[std::size_t(worst.passage)].quality, run.sector().kind().cells);
+                      result.passages[std::size_t(worst.passage)].quality, run.sector().loaded().kind().cells);
 }
 
 nlohmann::json wheel_page_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result,

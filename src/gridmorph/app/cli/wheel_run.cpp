@@ -18,9 +18,9 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-std::unique_ptr<PassageMesh> read(CaseFile const& case_file, MeshKind kind, Terminal& terminal) {
+WheelPassage read(CaseFile const& case_file, Terminal& terminal) {
   terminal.progress("reading " + case_file.input.string());
-  return kind == MeshKind::unstructured ? element_passage(case_file) : block_passage(case_file);
+  return WheelPassage(case_file);
 }
 
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
@@ -48,17 +48,17 @@ void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, i
 
 }  // namespace
 
-WheelRun::WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal)
+WheelRun::WheelRun(CaseFile const& case_file, Terminal& terminal)
     : case_(case_file),
       terminal_(terminal),
-      sector_(read(case_file, kind, terminal)),
-      mesh_(sector_->mesh()),
-      rows_(find_rows(mesh_, sector_->links(), case_file.motion.axis)),
+      sector_(read(case_file, terminal)),
+      mesh_(sector_.mesh()),
+      rows_(find_rows(mesh_, sector_.links(), case_file.motion.axis)),
       setup_(wheel_setup(case_file, mesh_, rows_)),
-      wheel_(sector_->wheel(rows_, setup_.passages(),
-                            case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
-      shared_(sector_->links(), rows_, true) {
-  if (!case_file.clearances.empty()) clearances_.emplace(case_file, sector_->boundary());
+      wheel_(sector_.wheel(rows_, setup_.passages(),
+                           case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
+      shared_(sector_.links(), rows_, true) {
+  if (!case_file.clearances.empty()) clearances_.emplace(case_file, sector_.loaded().boundary());
   time("read");
 }
 
@@ -71,15 +71,15 @@ void WheelRun::time(std::string const& step) {
 }
 
 void WheelRun::prepare() {
-  terminal_.progress(sector_->kind().planning);
+  terminal_.progress(sector_.loaded().kind().planning);
   check_fields(case_, mesh_);
   plan_ = plan_of(case_);
   check_wave();
   time("plan");
-  quality_.near = plan_->near();
+  quality_.near = plan_->motion().plan().near_cells();
   quality_.limits = case_.guard;
-  quality_.fast = wants_verdict(case_, sector_->n_cells());
-  baseline_ = sector_->measure(quality_);
+  quality_.fast = wants_verdict(case_, sector_.loaded().n_cells());
+  baseline_ = sector_.loaded().measure(quality_);
   time("quality");
   morphed_ = Coordinates(mesh_.n_nodes());
   placed_ = Coordinates(mesh_.n_nodes());
@@ -87,8 +87,8 @@ void WheelRun::prepare() {
     retry();
     time("retries");
   }
-  notes_ = sector_->notes();
-  notes_.insert(notes_.end(), plan_->notes().begin(), plan_->notes().end());
+  notes_ = sector_.loaded().notes();
+  notes_.insert(notes_.end(), plan_->motion().notes().begin(), plan_->motion().notes().end());
   if (!retried_.text.empty()) notes_.push_back(retried_.text);
   terminal_.expect({});
 }
@@ -99,16 +99,16 @@ void WheelRun::check_wave() const {
   for (std::size_t m = 0; m < setup_.motions.size(); ++m) {
     if (setup_.motions[m].same_rules != int(m)) continue;
     for (Moment const& when : setup_.moments) {
-      auto const now = plan_->displacement(int(m), setup_.at(int(m), when));
-      auto const later =
-          plan_->displacement(int(m), setup_.at(int(m), {when.periods + 1, when.time + setup_.period, when.step}));
+      auto const now = plan_->motion().displacement(int(m), setup_.at(int(m), when));
+      auto const later = plan_->motion().displacement(
+          int(m), setup_.at(int(m), {when.periods + 1, when.time + setup_.period, when.step}));
       double size = 0, gap = 0;
       for (std::size_t n = 0; n < now.size(); ++n) {
         size = std::max(size, norm(now[n]));
         gap = std::max(gap, distance(now[n], later[n]));
       }
       constexpr double same = 1e-9;  // of the displacement: phases are rounded
-      if (gap > same * std::max(size, 1e-6 * sector_->links().mesh_size))
+      if (gap > same * std::max(size, 1e-6 * sector_.links().mesh_size))
         throw MotionError(
             fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a period ({:.6g}) later differs by "
                         "{:.3g}, so that the last blade of the wave would not meet the first; give motions that "
@@ -129,7 +129,7 @@ void WheelRun::retry() {
   auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
     (void)morph(by, boundary, morphed_);
     quality_.morphed = &morphed_;
-    QualityReport const quality = sector_->measure(quality_);
+    QualityReport const quality = sector_.loaded().measure(quality_);
     return Trial{badness_of(quality),
                  newly_inverted(quality) > 0 || any_failure(shortfalls(baseline_, quality, thresholds_of(case_)))};
   };
@@ -156,7 +156,7 @@ void WheelRun::retry() {
       .unstructured = !mesh_.is_structured(),
       .chains = false,
       .smoothing = false,
-      .cells = sector_->kind().cells,
+      .cells = sector_.loaded().kind().cells,
       .progress = [&](std::string const& keys) { terminal_.progress("trying " + keys); },
       .make =
           [&](CaseFile const& recipe) {
@@ -182,8 +182,8 @@ void WheelRun::retry() {
   if (!retried_.text.empty()) retried_.text = fmt::format("{}, the worst one: {}", where, retried_.text);
 }
 
-RelaxReport WheelRun::morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed) {
-  RelaxReport const report = plan.morph(boundary, morphed);
+GuardReport WheelRun::morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed) {
+  GuardReport const report = plan.morph(boundary, morphed);
   time("morph");
   return report;
 }
@@ -192,9 +192,9 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   PassageResult passage;
   for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
   quality_.morphed = &morphed;
-  passage.quality = sector_->measure(quality_);
+  passage.quality = sector_.loaded().measure(quality_);
   passage.shortfalls = mapping_warnings(case_);
-  auto const trims = plan_->trims(boundary);
+  auto const trims = plan_->motion().trims(boundary);
   refuse_undone(trims, case_.guard.max_trim);
   auto const trimmed = trimmed_beyond(case_.guard.max_trim, trims);
   passage.shortfalls.insert(passage.shortfalls.end(), trimmed.begin(), trimmed.end());
@@ -235,11 +235,11 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
   }
   exec_.fence();
   double mismatch = 0;
-  for (PassageLink const& link : sector_->links().all) mismatch = std::max(mismatch, link.mismatch);
+  for (PassageLink const& link : sector_.links().all) mismatch = std::max(mismatch, link.mismatch);
   // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
   double const tolerance =
       4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance),
-                                            sector_->links().mesh_size, coordinate_resolution(mesh_));
+                                            sector_.links().mesh_size, coordinate_resolution(mesh_));
   for (int r = 0; r < int(seams.size()); ++r) {
     if (passage >= setup_.blades[r].passages) continue;
     seams[r].close(passage, placed_);
@@ -256,7 +256,7 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
 }
 
 void WheelRun::give(std::map<int, int> const& zones, ZoneSink const& sink) const {
-  Coordinates const written = sector_->in_file_order(placed_);
+  Coordinates const written = sector_.in_file_order(placed_);
   std::map<int, int> in_order;  // of the wheel
   for (auto const& [of_sector, of_wheel] : zones) in_order[of_wheel] = of_sector;
   for (auto const& [of_wheel, of_sector] : in_order) {
@@ -282,7 +282,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
                        (step + double(p) / n_passages) / n_steps);
     if (last < 0 || !motions.alike(p, last)) {
       auto const boundary = motions.boundary(p);
-      RelaxReport const relaxed = morph(*plan_, boundary, morphed_);
+      GuardReport const relaxed = morph(*plan_, boundary, morphed_);
       last = p;
       int const same = motions.first_alike(p);  // before p: it has been measured
       made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
@@ -290,7 +290,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
             fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
-                        relaxed.before, sector_->kind().lost, relaxed.rounds, relaxed.after));
+                        relaxed.before, sector_.loaded().kind().lost, relaxed.rounds, relaxed.after));
     } else {
       made.passages.push_back(made.passages.back());
     }
@@ -330,7 +330,7 @@ WheelResult WheelRun::result(WheelMade made) {
 void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
   std::vector<int> own;
   for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
-  add_passage(wheel, sector_->certify(placed_, own), zones);
+  add_passage(wheel, certify(sector_.loaded().indexed(), placed_, own), zones);
   time("quality");
 }
 
@@ -399,7 +399,7 @@ nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelR
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what) {
   return refusal(output.string(), what, run.diagnosis(),
                  "move the blades less, " + (run.sector().mesh().is_structured()
-                                                 ? run.sector().kind().change
+                                                 ? run.sector().loaded().kind().change
                                                  : std::string("change [near_field], set retry = true in [guard]")));
 }
 

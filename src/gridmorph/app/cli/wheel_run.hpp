@@ -31,9 +31,9 @@ struct WorstPassage {
 class WheelRun {
  public:
   /// Reads the passage. The case file must outlive the run.
-  WheelRun(CaseFile const& case_file, MeshKind kind, Terminal& terminal);
+  WheelRun(CaseFile const& case_file, Terminal& terminal);
 
-  [[nodiscard]] PassageMesh const& sector() const { return *sector_; }
+  [[nodiscard]] WheelPassage const& sector() const { return sector_; }
   [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
   [[nodiscard]] WheelRows const& rows() const { return rows_; }
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
@@ -60,12 +60,12 @@ class WheelRun {
 
  private:
   [[nodiscard]] std::unique_ptr<PassagePlan> plan_of(CaseFile const& case_file) const {
-    return sector_->plan(case_file, rows_, setup_);
+    return std::make_unique<PassagePlan>(sector_, case_file, rows_, setup_);
   }
   void retry();
   void check_wave() const;
   void move_to(int step);
-  RelaxReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
+  GuardReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
   void take_worst(int passage, QualityReport const& quality, Coordinates const& morphed);
   [[nodiscard]] std::vector<Seams> new_seams() const;
@@ -86,7 +86,7 @@ class WheelRun {
   QualityReport baseline_;
   Retried retried_;
   Diagnosis worst_of_;
-  std::unique_ptr<PassageMesh> sector_;
+  WheelPassage sector_;
   Mesh const& mesh_;
   WheelRows rows_;
   WheelSetup setup_;

@@ -93,7 +93,7 @@ int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::files
   if (report) outputs.push_back({"report", *report});
   check_run_files(inputs_of(case_file, file), outputs);
 
-  WheelRun run(case_file, file.kind, terminal);
+  WheelRun run(case_file, terminal);
   run.prepare();
   WheelFiles files(options, run.wheel().mesh);
   if (files.wants_baseline()) files.write_baseline([&](ZoneSink const& sink) { run.make_baseline(sink); });
