@@ -1,5 +1,5 @@
-// The reader of case files knows the keys that its list (keys.txt) and the tables of docs/case_file.md have. That the list
-// and the tables say the same is the test docs.case_file_tables.
+// The reader of case files knows the keys that its list (keys.txt) and the tables of docs/case_file.md have. That the
+// list and the tables say the same is the test docs.case_file_tables.
 #include "case_text.hpp"
 
 #include <gridmorph/app/casefile/detail/rule_reader.hpp>
