@@ -1,5 +1,5 @@
-"""Keys of case files, read from the tables of docs/case_file.md, which a test holds equal to what the reader knows: an
-anchor for each of them, an index of all, and the reference that `gridmorph keys` gives."""
+"""Keys of case files, read from the tables of docs/case_file.md, which scripts/case-file-tables makes and a test holds equal to what
+the reader knows: an anchor for each of them, an index of all, and the reference that `gridmorph keys` gives."""
 import re
 
 OPEN, CLOSE = re.compile(r"<!-- keys: (.+) -->"), "<!-- end of keys -->"
@@ -50,7 +50,7 @@ def reference_page(keys):
     lines = ["# Reference of keys", "",
              f"All {len(keys)} keys of case files, table by table, from the program: this page is `gridmorph keys`, which takes them from the list that the "
              "reader's own messages are made of. [Case files](case_file.md) has the same keys with examples and more to say of each, and an "
-             "[index](case_keys.md) has them by name. A test holds the three equal.", ""]
+             "[index](case_keys.md) has them by name. All three are made from one list.", ""]
     last = None
     for key in keys:
         if key["table"] != last:

@@ -117,5 +117,24 @@ class PagesOfAlgorithms(unittest.TestCase):
             self.assertEqual(places.count(f"- algorithms/{page.name}\n"), 1, page.name)
 
 
+class PagesForDevelopers(unittest.TestCase):
+    pages = sorted(path for folder in ("howto", "notes") for path in (DOCS / folder).glob("*.md"))
+
+    def test_files_that_they_name_are_there(self):
+        for page in self.pages:
+            named = set(NAMED_FILE.findall(page.read_text(encoding="utf-8")))
+            self.assertEqual([name for name in sorted(named) if file_named(name) is None], [], page.name)
+
+    def test_each_is_linked_and_has_its_place(self):
+        notes = (DOCS / "notes/index.md").read_text(encoding="utf-8")
+        contributing = (DOCS.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        places = (DOCS / "site/mkdocs.yml").read_text(encoding="utf-8")
+        for page in self.pages:
+            name = page.relative_to(DOCS).as_posix()
+            linked = name == "notes/index.md" or f"]({page.name})" in notes or f"](docs/{name})" in contributing
+            self.assertTrue(linked, name)
+            self.assertEqual(places.count(f"- {name}\n"), 1, name)
+
+
 if __name__ == "__main__":
     unittest.main()

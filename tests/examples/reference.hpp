@@ -1,6 +1,6 @@
 // Where nodes of morphed examples and demos were when the files in reference/ were written: a change of results shows,
-// with the node that moved and by how much. GRIDMORPH_WRITE_REFERENCE=1 writes the files anew; CHANGELOG.md then says
-// why results changed.
+// with the node that moved and by how much. GRIDMORPH_WRITE_REFERENCE=1 writes the files anew; docs/notes/changes.md
+// then says why results changed.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
