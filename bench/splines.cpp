@@ -14,8 +14,8 @@
 #include "scaled_jacobian.hpp"
 #include "thin_plate.hpp"
 
-#include <gridmorph/app/casefile/case_file.hpp>
-#include <gridmorph/app/casefile/side_file.hpp>
+#include <gridmorph/case/case_file.hpp>
+#include <gridmorph/case/side_file.hpp>
 #include <gridmorph/gridmorph.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>

@@ -33,7 +33,7 @@ endif()
 if(GRIDMORPH_ENABLE_CLI)
   install(TARGETS gridmorph_cli COMPONENT runtime)
   if(BUILD_SHARED_LIBS)
-    install(TARGETS gridmorph_app LIBRARY COMPONENT runtime NAMELINK_SKIP)
+    install(TARGETS gridmorph_tools gridmorph_case gridmorph_run LIBRARY COMPONENT runtime NAMELINK_SKIP)
   endif()
   install(FILES "${PROJECT_SOURCE_DIR}/docs/gridmorph.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT runtime)
   install(FILES "${PROJECT_SOURCE_DIR}/scripts/completion/gridmorph.bash"

@@ -42,7 +42,8 @@ struct SphereCase {
     gridmorph::UnstructuredQualityInput<Kokkos::HostSpace> input;
     input.baseline = gridmorph::views(mesh.mesh().coordinates);
     input.coordinates = gridmorph::views(morphed);
-    auto const quality = gridmorph::measure_quality(Exec(), mesh.mesh(), mesh.topology(), mesh.face_patches(), input).far_field;
+    auto const quality =
+        gridmorph::measure_quality(Exec(), mesh.mesh(), mesh.topology(), mesh.face_patches(), input).far_field;
     char text[64];
     std::snprintf(text, sizeof text, "%lld (%.3g)", static_cast<long long>(quality.newly_inverted),
                   quality[gridmorph::Measure::determinant_3x3x3].min);

@@ -1,8 +1,8 @@
 #include "objects.hpp"
 
-#include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/case/side_file.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/mesh_io.hpp>
@@ -66,8 +66,8 @@ Coordinates coordinates_from(Mesh const& mesh, Vectors const& v) {
   return out;
 }
 
-/// Throws ConfigError where a file cannot be written: one that the mesh was read from, one that is there already, or one whose ending says something
-/// else than what it will be.
+/// Throws ConfigError where a file cannot be written: one that the mesh was read from, one that is there already, or
+/// one whose ending says something else than what it will be.
 void check_output(PyMesh const& self, std::string const& path, bool overwrite, std::string const& format) {
   namespace fs = std::filesystem;
   Mesh const& mesh = *self.mesh;
@@ -78,10 +78,12 @@ void check_output(PyMesh const& self, std::string const& path, bool overwrite, s
     std::vector<std::string> inputs = look_at_mesh(mesh.source).linked;
     inputs.push_back(mesh.source);
     for (std::string const& input : inputs)
-      if (fs::equivalent(input, path, error)) refuse("the mesh was read from it; give another name, inputs are never overwritten");
+      if (fs::equivalent(input, path, error))
+        refuse("the mesh was read from it; give another name, inputs are never overwritten");
   }
   if (auto const ending = format_of_ending(path); !ending.empty() && ending != format)
-    refuse("its ending stands for " + std::string(ending) + ", and it is written as " + format + "; give it another ending");
+    refuse("its ending stands for " + std::string(ending) + ", and it is written as " + format +
+           "; give it another ending");
   auto const folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::exists(folder, error)) refuse("the folder does not exist; make it first");
   if (!overwrite && fs::exists(path, error)) refuse("exists already; give another name, or overwrite=True");

@@ -3,7 +3,7 @@
 
 #include "session.hpp"
 
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 

@@ -1,7 +1,7 @@
 // Kokkos for the length of a Python program, and one call at a time.
 #pragma once
 
-#include <gridmorph/app/cli/kokkos_session.hpp>
+#include <gridmorph/command/kokkos_session.hpp>
 
 #include <nanobind/nanobind.h>
 
@@ -19,8 +19,9 @@ class Session {
   Session& operator=(Session const&) = delete;
   ~Session();
 
-  /// Starts Kokkos where it does not run. `threads` 0: OMP_NUM_THREADS, else all that the machine has. Throws ConfigError for another number than that of
-  /// a session that runs, and on a thread that an old Kokkos does not take calls from.
+  /// Starts Kokkos where it does not run. `threads` 0: OMP_NUM_THREADS, else all that the machine has. Throws
+  /// ConfigError for another number than that of a session that runs, and on a thread that an old Kokkos does not take
+  /// calls from.
   static std::shared_ptr<Session> get(int threads = 0);
   /// The interpreter goes: no new object comes.
   static void leave();
@@ -30,8 +31,8 @@ class Session {
   std::optional<cli::KokkosSession> own_;
 };
 
-/// For the length of a call: the interpreter goes on with other threads, other calls wait. A call uses all threads of Kokkos, and the CGNS
-/// library takes one at a time.
+/// For the length of a call: the interpreter goes on with other threads, other calls wait. A call uses all threads of
+/// Kokkos, and the CGNS library takes one at a time.
 class Call {
  public:
   Call();

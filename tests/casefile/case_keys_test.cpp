@@ -2,8 +2,8 @@
 // list and the tables say the same is the test docs.case_file_tables.
 #include "case_text.hpp"
 
-#include <gridmorph/app/casefile/detail/rule_reader.hpp>
-#include <gridmorph/app/casefile/key_list.hpp>
+#include <gridmorph/case/detail/rule_reader.hpp>
+#include <gridmorph/case/key_list.hpp>
 
 #include <map>
 #include <set>

@@ -3,7 +3,7 @@
 
 #include "support/temporary_folder.hpp"
 
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/motion.hpp>
 

@@ -1,6 +1,6 @@
 #include "case_text.hpp"
 
-#include <gridmorph/app/casefile/formula.hpp>
+#include <gridmorph/case/formula.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 // Keys that are right in themselves and mean nothing for the mesh, or the command, at hand.
 #include "case_text.hpp"
 
-#include <gridmorph/app/casefile/ignored_keys.hpp>
+#include <gridmorph/case/ignored_keys.hpp>
 
 namespace gridmorph::testing {
 namespace {

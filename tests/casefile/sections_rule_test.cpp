@@ -1,7 +1,7 @@
 // The keys of rule = "sections": what they become, and what is refused with which line.
 #include "case_text.hpp"
 
-#include <gridmorph/app/casefile/detail/sections_reader.hpp>
+#include <gridmorph/case/detail/sections_reader.hpp>
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include "support/scramble.hpp"
 #include "support/unstructured_meshes.hpp"
 
-#include <gridmorph/app/casefile/side_file.hpp>
 #include <gridmorph/boundary/coverage.hpp>
+#include <gridmorph/case/side_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>

@@ -1,7 +1,7 @@
 // The keys of rule = "target" and the text files it reads.
 #include <gtest/gtest.h>
-#include <gridmorph/app/casefile/case_file.hpp>
-#include <gridmorph/app/casefile/target_file.hpp>
+#include <gridmorph/case/case_file.hpp>
+#include <gridmorph/case/target_file.hpp>
 #include <gridmorph/core/error.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "support/temporary_folder.hpp"
 
 #include <generators/ball_demo.hpp>
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 

@@ -1,7 +1,7 @@
 #include "passage_checks.hpp"
 
 #include <generators/passage_demo.hpp>
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 

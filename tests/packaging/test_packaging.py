@@ -264,14 +264,14 @@ class Toml11(unittest.TestCase):
     """Debian 12 has version 3, newer ones have version 4: two files know the difference, and others go by them."""
 
     def test_only_these_files_use_what_the_versions_name_differently(self):
-        folder = os.path.join(ROOT, "src", "gridmorph", "app")
+        folder = os.path.join(ROOT, "src", "gridmorph")
         found = set()
         for where, _, names in os.walk(folder):
             for name in names:
                 with open(os.path.join(where, name), encoding="utf-8") as file:
                     if re.search(r"as_string\(\)|TOML11_VERSION|\.location\(\)", file.read()):
                         found.add(os.path.relpath(os.path.join(where, name), folder))
-        self.assertEqual(found, {"casefile/detail/toml.hpp", "casefile/detail/parse_toml.cpp"})
+        self.assertEqual(found, {"case/detail/toml.hpp", "case/detail/parse_toml.cpp"})
 
 
 if __name__ == "__main__":

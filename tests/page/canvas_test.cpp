@@ -1,5 +1,5 @@
 // Triangles, polygons and lines as pixels.
-#include <gridmorph/app/page/canvas.hpp>
+#include <gridmorph/page/canvas.hpp>
 
 #include <gtest/gtest.h>
 

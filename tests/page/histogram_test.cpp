@@ -1,5 +1,5 @@
 // Histograms: each cell once, in the bin that holds its value.
-#include <gridmorph/app/page/histogram.hpp>
+#include <gridmorph/page/histogram.hpp>
 
 #include <gtest/gtest.h>
 

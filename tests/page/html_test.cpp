@@ -1,6 +1,6 @@
 // Text on pages: names of any kind come out as text.
-#include <gridmorph/app/page/html.hpp>
-#include <gridmorph/app/page/report_page.hpp>
+#include <gridmorph/page/html.hpp>
+#include <gridmorph/page/report_page.hpp>
 #include <gridmorph/report/quality_json.hpp>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <support/mesh_builders.hpp>
 #include <support/unstructured_meshes.hpp>
 
-#include <gridmorph/app/page/section.hpp>
+#include <gridmorph/page/section.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Options, help, exit statuses and output channels.
 #include "run_command.hpp"
 
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 
 #include <nlohmann/json.hpp>
 

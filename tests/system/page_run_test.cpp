@@ -1,7 +1,7 @@
 // Report pages of whole runs.
 #include <system/run_command.hpp>
 
-#include <gridmorph/app/page/page_parts.hpp>
+#include <gridmorph/page/page_parts.hpp>
 
 #include <nlohmann/json.hpp>
 

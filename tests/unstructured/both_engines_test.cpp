@@ -5,7 +5,7 @@
 
 #include "../io/io_support.hpp"
 
-#include <gridmorph/app/casefile/case_file.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/quality/quality.hpp>

@@ -8,8 +8,8 @@
 
 #include <generators/passage.hpp>
 #include <generators/passage_motion.hpp>
-#include <gridmorph/app/casefile/case_file.hpp>
 #include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/case/case_file.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>

@@ -1,0 +1,85 @@
+// One page that says what came of a morph: verdict, what moved, plan, quality, sections, timings, and what it takes to
+// repeat it.
+//
+// The page stands by itself: pictures are in it, it asks for nothing from elsewhere, and a policy in its head keeps it
+// so. Numbers are those of the JSON report, which is a part of what it is made from.
+#pragma once
+
+#include <gridmorph/page/cell_picture.hpp>
+#include <gridmorph/page/histogram.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gridmorph::page {
+
+/// What one rule moved.
+struct RuleRow {
+  std::string rule, patches;
+  std::string where;  ///< "case.toml:14"; "default"
+  Index nodes = 0;
+  double largest = 0, mean = 0;  ///< displacement
+};
+
+/// What must hold beside the quality of cells.
+struct BoundaryCheck {
+  Index periodic_nodes = 0;  ///< of periodic connections; 0: none
+  double periodic =
+      0;  ///< largest difference between the displacements of a node and of its copy, turned into its frame
+  Index slip_nodes = 0;
+  double slip = 0;  ///< largest distance of a node of slip surfaces from where its surface has it
+};
+
+struct WorstCell {
+  CellName name;
+  std::string reason;  ///< "smallest determinant, near field"
+  Vec3 centre;         ///< morphed
+  kernels::CellMeasures before, after;
+  std::optional<CellDrawing> drawing;
+};
+
+struct Figure {
+  std::string body;  ///< HTML
+  std::string caption;
+};
+
+/// Pictures that belong together, side by side where there is room.
+struct FigureGroup {
+  std::string title;
+  std::vector<Figure> figures;
+};
+
+struct StepFigure {
+  int step = 0;  ///< from 1 on
+  std::string body;
+};
+
+struct ReportPage {
+  nlohmann::json report;  ///< as --report writes it
+  bool structured = true;
+  std::string kind;  ///< "cells" or "elements"
+  double mesh_size = 0, largest_displacement = 0;
+  std::string mesh_summary;  ///< "3-D, 5 zones of blocks, 200000 nodes, ..."
+  std::vector<RuleRow> rules;
+  BoundaryCheck check;
+  std::vector<Figure> surfaces;
+  double scale_end = 0;  ///< displacement at the end of the scale of colours
+  nlohmann::json plan;   ///< AnyPlan::json()
+  std::string graph;     ///< SVG; empty: none
+  std::vector<Histogram> near_histograms, far_histograms;
+  std::string histogram_note;
+  std::vector<WorstCell> worst;
+  std::vector<FigureGroup> sections;
+  std::vector<StepFigure> steps;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< versions, machine, input
+  std::string command_line, case_text;
+};
+
+/// The page. Cost: its length.
+std::string page_text(ReportPage const& page);
+
+}  // namespace gridmorph::page

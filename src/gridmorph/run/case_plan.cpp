@@ -1,0 +1,358 @@
+// The steps between a mesh with the motion of a case file and morphed coordinates.
+#include <gridmorph/boundary/selectors.hpp>
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/mapping/mapping_report.hpp>
+#include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/best_order.hpp>
+#include <gridmorph/morph/element_prediction.hpp>
+#include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/morph/predictor.hpp>
+#include <gridmorph/motion/wake/wake_regions.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/report/element_prediction_text.hpp>
+#include <gridmorph/report/prediction_text.hpp>
+#include <gridmorph/report/target_text.hpp>
+#include <gridmorph/run/block_stages.hpp>
+#include <gridmorph/run/case_plan.hpp>
+#include <gridmorph/run/element_stages.hpp>
+#include <gridmorph/run/plan_text.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+MorphPlan planned(LoadedMesh const& mesh, CaseFile const& case_file, PlanOptions const& options) {
+  MotionSeries series;
+  if (case_file.sequence) {
+    series.steps = case_file.sequence->steps;
+    series.motion = [&](int step) { return motion_at(case_file, case_file.sequence->moment(step)); };
+  }
+  try {
+    return {HostInstance(), mesh.indexed(), case_file.motion, options, series};
+  } catch (MotionError const& e) {  // rules about an axis fail in many ways when it is not the machine's
+    if (!mesh.is_structured()) throw;
+    auto const cause = axis_mismatch(mesh.mesh(), case_file.motion.axis);
+    if (!cause) throw;
+    throw MotionError(fmt::format("{}\n  likely cause: {}", e.what(), *cause));
+  }
+}
+
+/// Regions of blocks that rules move, and those that are measured alone. mesh: with the patches of the former; notes:
+/// gets what there is to say of the latter.
+MeasuredRegions regions_of_blocks(Mesh mesh, std::vector<InnerRegion> const& measured,
+                                  std::vector<std::string>& notes) {
+  std::size_t const n_notes = mesh.notes.size();
+  add_regions(mesh, measured);
+  notes.insert(notes.end(), mesh.notes.begin() + std::ptrdiff_t(n_notes), mesh.notes.end());
+  MeasuredRegions out;
+  for (Patch const& patch : mesh.patches) {
+    if (!is_box(patch)) continue;
+    auto at = std::find_if(out.cells.begin(), out.cells.end(), [&](auto const& r) { return r.name == patch.name; });
+    if (at == out.cells.end()) at = out.cells.insert(at, {patch.name, {}});
+    at->boxes.push_back({patch.zone, patch.range});
+    for (int& end : at->boxes.back().cells.end) --end;
+  }
+  return out;
+}
+
+void add_region_of_elements(Mesh const& mesh, InnerRegion const& region, MeasuredRegions& out) {
+  auto const in = elements_of_region(mesh, region);
+  if (std::none_of(in.begin(), in.end(), [](std::uint8_t n) { return n != 0; })) return;
+  Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const mask("gridmorph::cli::region", in.size());
+  std::copy(in.begin(), in.end(), mask.data());
+  out.elements.push_back({region.name, mask});
+}
+
+/// "step 7 of 24 comes out worst: "
+std::string worst_step_text(int step, int steps) {
+  auto const looked_at = int(some_steps(steps, most_predicted).size());
+  return looked_at == steps
+             ? fmt::format("step {} of {} comes out worst: ", step + 1, steps)
+             : fmt::format("step {} comes out worst of the {} that are looked at of {}: ", step + 1, looked_at, steps);
+}
+
+}  // namespace
+
+PlanOptions with_background(CaseFile const& case_file, Mesh const& mesh) {
+  PlanOptions options = case_file.plan;
+  if (auto const& own = case_file.background; own && !mesh.is_structured())
+    options.elements.background =
+        std::make_shared<Background const>(make_background(read_mesh(own->path.string()), own->wrap, own->outer));
+  return options;
+}
+
+CasePlan::CasePlan(LoadedMesh const& mesh, CaseFile const& case_file)
+    : mesh_(mesh),
+      shocks_(locate_shocks(case_file, mesh.mesh())),
+      case_file_(shocks_.case_file),
+      options_(with_background(case_file_, mesh.mesh())),
+      plan_(planned(mesh, case_file_, options_)),
+      near_(plan_.near_cells()) {
+  auto const& boundary = rules().shared_boundary();
+  if (mesh_.is_structured()) {
+    regions_ = regions_of_blocks(
+        patched(), locate_wakes(boundary, rules().motion(), case_file_.measured_regions, region_notes_), region_notes_);
+    return;
+  }
+  std::vector<std::string> notes;  // those of the rules come again
+  for (auto const* regions : {&case_file_.motion.regions, &case_file_.measured_regions})
+    for (InnerRegion const& region : locate_wakes(boundary, rules().motion(), *regions, notes))
+      add_region_of_elements(mesh_.mesh(), region, regions_);
+}
+
+Mesh const& CasePlan::patched() const {
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
+  return blocks != nullptr ? blocks->mesh : mesh_.mesh();
+}
+
+std::vector<Vec3> CasePlan::displacement(Moment const* when) {
+  evaluated_ = true;
+  if (when == nullptr) {
+    auto const& out = plan_.boundary_displacement();
+    take_trims(plan_.trims(out));
+    return out;
+  }
+  Motion const now = motion_at(case_file_, *when);
+  auto out = plan_.boundary_displacement(now);
+  take_trims(plan_.trims(out, now));
+  return out;
+}
+
+std::vector<Vec3> CasePlan::displacement(double share) const {
+  return plan_.boundary_displacement(fraction_of(case_file_, share));
+}
+
+void CasePlan::take_trims(std::vector<Trim> const& trims) {
+  refuse_undone(trims, case_file_.guard.max_trim);
+  for (Trim const& trim : trims) {
+    auto const known = std::find_if(trims_.begin(), trims_.end(),
+                                    [&](Trim const& t) { return t.patch == trim.patch && t.rule == trim.rule; });
+    if (known == trims_.end())
+      trims_.push_back(trim);
+    else if (trim.share() > known->share())
+      *known = trim;
+  }
+}
+
+std::vector<Shortfall> CasePlan::trimmed() const { return trimmed_beyond(case_file_.guard.max_trim, trims_); }
+
+void CasePlan::morph(std::vector<Vec3> const& displacement, Coordinates& morphed, StepTimes* times) {
+  Stopwatch watch;
+  if (!morpher_) {
+    morpher_.emplace(exec_, plan_, mesh_.coordinates());
+    // Of blocks the line parameters, which are part of a morph that is made once.
+    if (times != nullptr && !mesh_.is_structured()) times->push_back({"upload", watch.lap(), true});
+  }
+  apply_on_host(*morpher_, displacement, morphed);
+  if (times != nullptr) times->push_back({"morph", watch.lap(), true});
+}
+
+GuardReport CasePlan::relax(Coordinates& morphed) const {
+  if (!frozen_) return guard(exec_, mesh_.indexed(), plan_, morphed);
+  return report_of(smooth_frozen(exec_, *PlanAccess::blocks(plan_), mesh_.indexed().handedness(), morphed, *frozen_));
+}
+
+void CasePlan::freeze(Coordinates const& morphed) {
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
+  if (blocks == nullptr) return;
+  FrozenSmoothing const lost = lost_shapes(exec_, *blocks, mesh_.indexed().handedness(), morphed);
+  if (!frozen_) frozen_.emplace();
+  frozen_->join(lost);
+}
+
+void CasePlan::record(std::vector<Vec3> const& displacement, Coordinates const& plain, Coordinates const& guarded) {
+  if (!record_) record_.emplace(plan_);
+  record_->add(displacement, plain, guarded);
+}
+
+SmoothingMap const& CasePlan::freeze_recorded() {
+  plan_ = plan_.with(record_->map());
+  record_.reset();
+  morpher_.reset();
+  return *plan_.smoothing();
+}
+
+std::optional<Coordinates> CasePlan::morph_in_steps(std::vector<Vec3> const& displacement, int steps,
+                                                    std::function<void(int step)> const& progress) const {
+  if (mesh_.is_structured() || options_.elements.background) return {};
+  StepOptions options;
+  options.steps = steps;
+  options.plan = options_;
+  options.progress = progress;
+  return gridmorph::morph_in_steps(mesh_.indexed(), plan_, displacement, options);
+}
+
+QualityReport CasePlan::measure(QualityWanted wanted) const {
+  wanted.near = near_;
+  wanted.regions = regions_;
+  return mesh_.measure(wanted, patched());
+}
+
+PlanOutcome CasePlan::outcome(Coordinates const& morphed, bool verdict, bool at_once) const {
+  PlanOutcome out;
+  if (!mesh_.is_structured()) out.json = json();
+  auto const targets = at_once ? rules().target_reach(morphed) : std::vector<TargetReach>();
+  for (auto const& target : targets) out.notes.push_back(describe_reach(patched(), target));
+  out.json["targets"] = targets_json(patched(), targets);
+  if (!mesh_.is_structured()) return out;
+  out.json["stages"] = verdict ? nlohmann::json::array() : judge_stages(morphed, out.text);
+  return out;
+}
+
+/// The smallest determinant of each stage of blocks.
+nlohmann::json CasePlan::judge_stages(Coordinates const& morphed, std::string& text) const {
+  nlohmann::json out = nlohmann::json::array();
+  for (auto const& stage : PlanAccess::blocks(plan_)->plan().stages) {
+    CellValue const worst =
+        min_determinant(exec_, mesh_.mesh(), views(morphed), mesh_.indexed().handedness(), stage.cells);
+    nlohmann::json json{{"name", stage.name}, {"min_determinant", nullptr}};
+    if (worst.zone >= 0) {
+      auto const& zone = mesh_.mesh().zones[std::size_t(worst.zone)].name;
+      json["min_determinant"] = {
+          {"value", worst.value}, {"zone", zone}, {"cell", {worst.cell[0] + 1, worst.cell[1] + 1, worst.cell[2] + 1}}};
+      text += fmt::format("stage {}: smallest determinant {:.4g}, {}\n", stage.name, worst.value,
+                          describe_cell(zone, worst.cell));
+    }
+    out.push_back(std::move(json));
+  }
+  return out;
+}
+
+void CasePlan::write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
+                            Coordinates const& morphed) const {
+  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_))
+    write_block_stages(folder, mesh_.mesh(), blocks->plan(), displacement, morphed);
+  else
+    write_element_stages(folder, mesh_.mesh(), *PlanAccess::elements(plan_), *morpher_, morphed);
+}
+
+std::vector<std::string> CasePlan::notes() const {
+  std::vector<std::string> out;
+  auto const append = [&](std::vector<std::string> const& more) { out.insert(out.end(), more.begin(), more.end()); };
+  if (!mesh_.is_structured()) append(mesh_.notes());
+  append(shocks_.notes);
+  append(region_notes_);
+  append(plan_.notes());
+  for (Trim const& trim : trims_)
+    if (trim.share() <= case_file_.guard.max_trim) out.push_back(describe(trim));
+  if (frozen_ && !frozen_->cells.empty())
+    out.push_back(
+        fmt::format("{} cells lose their shape in some of the steps; nodes around them are smoothed in all "
+                    "of the steps alike",
+                    frozen_->cells.size()));
+  if (evaluated_ || !mesh_.is_structured()) append(mapping_notes(case_file_));
+  return out;
+}
+
+PlanPrediction CasePlan::predict() {
+  std::vector<int> const steps =
+      case_file_.sequence ? some_steps(case_file_.sequence->steps, most_predicted) : std::vector<int>{0};
+  auto const displacement_at = [&](int step) {
+    if (!case_file_.sequence) return displacement(nullptr);
+    Moment const when = case_file_.sequence->moment(step);
+    return displacement(&when);
+  };
+  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) {
+    WorstPrediction worst(exec_, *blocks);
+    for (int const step : steps) worst.look_at(step, displacement_at(step));
+    Prediction const closely = predict_closely(exec_, *blocks, worst.boundary(), worst.prediction());
+    return of_step(
+        {describe(patched(), closely), prediction_warnings(patched(), closely), prediction_json(patched(), closely)},
+        worst.step());
+  }
+  ElementPrediction worst;
+  int worst_step = 0;
+  Coordinates displaced(mesh_.n_nodes());
+  for (int const step : steps) {
+    morph(displacement_at(step), displaced, nullptr);
+    ElementPrediction now =
+        gridmorph::predict(exec_, mesh_.mesh(), *PlanAccess::elements(plan_), displaced, mesh_.indexed().signs());
+    if (step > 0 && !(now.all.kept.value < worst.all.kept.value)) continue;
+    worst = std::move(now);
+    worst_step = step;
+  }
+  return of_step({describe(patched(), worst), prediction_warnings(patched(), worst), prediction_json(patched(), worst)},
+                 worst_step);
+}
+
+PlanPrediction CasePlan::of_step(PlanPrediction prediction, int step) const {
+  if (!case_file_.sequence) return prediction;
+  prediction.text = worst_step_text(step, case_file_.sequence->steps) + prediction.text;
+  prediction.json["step"] = step + 1;
+  return prediction;
+}
+
+StepTimes CasePlan::times() const {
+  StepTimes out;
+  for (PlanSeconds const& took : plan_.seconds()) out.push_back({took.part, took.seconds, !mesh_.is_structured()});
+  return out;
+}
+
+std::string CasePlan::text(bool all) const {
+  std::string text;
+  for (auto const& note : notes()) text += "note: " + note + "\n";
+  if (!mesh_.is_structured()) return text + headline();
+  if (!text.empty()) text += "\n";
+  return text + block_plan_text(PlanAccess::blocks(plan_)->plan(), all);
+}
+
+nlohmann::json CasePlan::json() const {
+  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) return block_plan_json(blocks->plan());
+  return element_plan_json(*PlanAccess::elements(plan_), mesh_.n_cells());
+}
+
+std::optional<BlockGraph> CasePlan::graph() const {
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
+  if (blocks == nullptr) return {};
+  return block_graph(*blocks);
+}
+
+std::string CasePlan::headline() const {
+  PreparedUnstructured const* const elements = PlanAccess::elements(plan_);
+  return elements == nullptr ? std::string() : element_plan_text(*elements);
+}
+
+MeshForMessages CasePlan::for_messages() const {
+  return mesh_.is_structured() ? cli::for_messages(patched()) : cli::for_messages(mesh_.mesh(), rules().boundary());
+}
+
+std::vector<Shortfall> trimmed_beyond(double allowed, std::vector<Trim> const& trims) {
+  std::vector<Shortfall> out;
+  for (Trim const& trim : trims)
+    if (trim.share() > allowed) out.push_back({Shortfall::Severity::failure, describe(trim)});
+  return out;
+}
+
+std::vector<Shortfall> mapping_warnings(CaseFile const& case_file) {
+  std::vector<Shortfall> out;
+  for (auto const& use : case_file.fields) {
+    try {
+      use.field->judge();
+    } catch (MotionError const& e) {
+      throw MotionError(use.where + ": " + e.what());
+    }
+    if (auto const text = far_from_model(*use.field); !text.empty() && !use.inverse)
+      out.push_back({Shortfall::Severity::warning, use.where + ": " + text});
+  }
+  return out;
+}
+
+std::vector<std::string> mapping_notes(CaseFile const& case_file) {
+  std::vector<std::string> notes = case_file.notes;
+  for (auto const& use : case_file.fields) {
+    notes.insert(notes.end(), use.field->notes().begin(), use.field->notes().end());
+    notes.push_back(use.where + ": " + describe_mapping(*use.field));
+    if (use.inverse) notes.push_back(use.where + ": " + describe_inverse(*use.inverse));
+  }
+  return notes;
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,198 @@
+// Where a mesh is cut for a report page.
+#include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/run/run_page.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using page::Cut;
+
+constexpr std::array names{"x", "y", "z"};
+
+double component(Vec3 const& v, int d) { return d == 0 ? v.x : d == 1 ? v.y : v.z; }
+
+Cut plane_mesh_cut(Coordinates const& at) {
+  std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (Index n = 0; n < at.size(); ++n)
+    for (int d = 0; d < 3; ++d) {
+      low[std::size_t(d)] = std::min(low[std::size_t(d)], component(at[n], d));
+      high[std::size_t(d)] = std::max(high[std::size_t(d)], component(at[n], d));
+    }
+  int thin = 2;
+  for (int d = 1; d >= 0; --d)
+    if (high[std::size_t(d)] - low[std::size_t(d)] < high[std::size_t(thin)] - low[std::size_t(thin)]) thin = d;
+  int const a = thin == 0 ? 1 : 0, b = thin == 2 ? 1 : 2;
+  Cut cut;
+  cut.title = "The mesh";
+  cut.labels = {names[std::size_t(a)], names[std::size_t(b)]};
+  cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
+  return cut;
+}
+
+/// Inner and outer radius of a mesh along its axis.
+class Annulus {
+ public:
+  Annulus(Coordinates const& at, Axis const& axis)
+      : frame_(axis), bins_(bins_of(at.size())), inner_(bins_, HUGE_VAL), outer_(bins_, -HUGE_VAL) {
+    for (Index n = 0; n < at.size(); ++n) {
+      double const a = frame_.meridional(at[n]).axial;
+      begin_ = std::min(begin_, a);
+      end_ = std::max(end_, a);
+    }
+    for (Index n = 0; n < at.size(); ++n) {
+      MeridionalPoint const p = frame_.meridional(at[n]);
+      std::size_t const b = bin(p.axial);
+      inner_[b] = std::min(inner_[b], p.radius);
+      outer_[b] = std::max(outer_[b], p.radius);
+    }
+  }
+
+  /// Whether both are functions of the axial position, with room between them everywhere: not so in radial machines.
+  [[nodiscard]] bool is_axial() const {
+    double gap = 0, jump = 0;
+    std::size_t full = 0, last = 0;
+    for (std::size_t b = 0; b < bins_; ++b) {
+      if (!(inner_[b] < outer_[b])) continue;
+      gap += outer_[b] - inner_[b];
+      if (full > 0)
+        jump = std::max({jump, std::fabs(inner_[b] - inner_[last]) / double(b - last),
+                         std::fabs(outer_[b] - outer_[last]) / double(b - last)});
+      last = b;
+      ++full;
+    }
+    return full > bins_ / 2 && jump < 0.25 * gap / double(full);
+  }
+
+  /// Share of the way from the inner to the outer radius.
+  [[nodiscard]] double span(Vec3 const& p) const {
+    MeridionalPoint const m = frame_.meridional(p);
+    double const at = std::clamp((m.axial - begin_) / (end_ - begin_) * double(bins_) - 0.5, 0.0, double(bins_ - 1));
+    auto const b = std::min(std::size_t(at), bins_ - 2);
+    double const t = at - double(b);
+    double const in = value(inner_, b) * (1 - t) + t * value(inner_, b + 1);
+    double const out = value(outer_, b) * (1 - t) + t * value(outer_, b + 1);
+    return (m.radius - in) / (out - in);
+  }
+  [[nodiscard]] CylindricalFrame const& frame() const { return frame_; }
+
+ private:
+  /// So few that each has nodes of both walls, where blades lean too.
+  static std::size_t bins_of(Index nodes) { return std::size_t(std::clamp(0.5 * std::cbrt(double(nodes)), 8.0, 80.0)); }
+  [[nodiscard]] std::size_t bin(double a) const {
+    return std::min(bins_ - 1, std::size_t((a - begin_) / (end_ - begin_) * double(bins_)));
+  }
+  /// Of the nearest bin that has nodes.
+  [[nodiscard]] double value(std::vector<double> const& of, std::size_t b) const {
+    for (std::size_t d = 0; d < bins_; ++d) {
+      if (b >= d && std::isfinite(of[b - d])) return of[b - d];
+      if (b + d < bins_ && std::isfinite(of[b + d])) return of[b + d];
+    }
+    return 0;
+  }
+
+  CylindricalFrame frame_;
+  double begin_ = HUGE_VAL, end_ = -HUGE_VAL;
+  std::size_t bins_;
+  std::vector<double> inner_, outer_;
+};
+
+/// At constant span, rolled out about the middle of what moves: axial position and radius x angle.
+std::vector<Cut> span_cuts(std::shared_ptr<Annulus const> const& annulus, page::Surface const& surface) {
+  CylindricalFrame const& frame = annulus->frame();
+  Vec3 const across =
+      std::fabs(frame.direction().x) < 0.9 ? cross(frame.direction(), {1, 0, 0}) : cross(frame.direction(), {0, 1, 0});
+  Vec3 const first = (1 / norm(across)) * across, second = cross(frame.direction(), first);
+  double radius = 0, x = 0, y = 0, n = 0;
+  for (std::size_t k = 0; k < surface.nodes.size(); ++k) {
+    if (surface.focus[k] == 0) continue;
+    Vec3 const d = surface.baseline[k] - frame.origin();
+    double const r = frame.meridional(surface.baseline[k]).radius;
+    radius += r;
+    x += dot(d, first) / std::max(r, 1e-300);
+    y += dot(d, second) / std::max(r, 1e-300);
+    ++n;
+  }
+  if (n == 0) return {};
+  radius /= n;
+  constexpr double turn = 2 * 3.14159265358979323846;
+  double const middle = std::atan2(y, x);
+  std::vector<Cut> out;
+  for (double const share : {0.5, 0.9}) {
+    Cut cut;
+    cut.title = fmt::format("Span {:.0f} %, rolled out", 100 * share);
+    cut.labels = {"axial", "radius x angle"};
+    cut.levels = [annulus, share](Coordinates const& at, std::span<double> level) {
+      for (std::size_t n = 0; n < level.size(); ++n) level[n] = annulus->span(at[Index(n)]) - share;
+    };
+    cut.flat = [annulus, first, second, middle, radius](Vec3 const& p) {
+      CylindricalFrame const& f = annulus->frame();
+      Vec3 const d = p - f.origin();
+      double angle = std::atan2(dot(d, second), dot(d, first)) - middle;
+      angle -= turn * std::round(angle / turn);
+      return page::Flat{dot(d, f.direction()), radius * angle};
+    };
+    cut.period = turn * radius;
+    out.push_back(std::move(cut));
+  }
+  return out;
+}
+
+/// Across each coordinate, through the middle of what moves, weighted by how far it does.
+std::vector<Cut> plane_cuts(page::Surface const& surface, std::vector<Vec3> const& displacement) {
+  Vec3 middle;
+  double weight = 0;
+  bool const focus = std::find(surface.focus.begin(), surface.focus.end(), 1) != surface.focus.end();
+  for (std::size_t n = 0; n < surface.nodes.size(); ++n) {
+    if (focus && surface.focus[n] == 0) continue;
+    double const u = norm(displacement[n]) + 1e-30;
+    middle += u * surface.baseline[n];
+    weight += u;
+  }
+  std::vector<Cut> out;
+  for (int d = 0; d < 3 && weight > 0; ++d) {
+    double const at = component(middle, d) / weight;
+    int const a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+    Cut cut;
+    cut.title = fmt::format("{} = {:.4g}", names[std::size_t(d)], at);
+    cut.labels = {names[std::size_t(a)], names[std::size_t(b)]};
+    cut.levels = [d, at](Coordinates const& nodes, std::span<double> level) {
+      double const* const x = (d == 0 ? nodes.x : d == 1 ? nodes.y : nodes.z).data();
+      for (std::size_t n = 0; n < level.size(); ++n) level[n] = x[n] - at;
+    };
+    cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
+    out.push_back(std::move(cut));
+  }
+  return out;
+}
+
+bool has_blades(ResolvedMotion const& motion) {
+  return std::any_of(motion.rules.begin(), motion.rules.end(), [](MotionRule const& rule) {
+    return std::holds_alternative<CircumferentialSlideRule>(rule.rule) || std::holds_alternative<FollowRule>(rule.rule);
+  });
+}
+
+}  // namespace
+
+bool is_of_machine(BoundaryMotion const& rules) {
+  return has_blades(rules.motion()) || !rules.boundary().periodic_transforms().empty();
+}
+
+std::vector<Cut> cuts_of(page::PictureMesh const& mesh, bool of_machine, std::optional<Axis> const& axis,
+                         page::Surface const& surface, std::vector<Vec3> const& displacement) {
+  Coordinates const& at = mesh.mesh().coordinates;
+  if (mesh.is_plane()) return {plane_mesh_cut(at)};
+  if (axis && of_machine)
+    if (auto const annulus = std::make_shared<Annulus const>(at, *axis); annulus->is_axial())
+      if (auto cuts = span_cuts(annulus, surface); !cuts.empty()) return cuts;
+  return plane_cuts(surface, displacement);
+}
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,50 @@
+// The meshes of a sequence on disk: one file per step, or one file with a series. All of them appear, or none.
+#pragma once
+
+#include <gridmorph/io/output_file.hpp>
+#include <gridmorph/run/loaded_mesh.hpp>
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// Whether the output names one file per step.
+bool one_file_per_step(SequenceOptions const& options);
+
+/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}"
+/// the output as it is.
+std::filesystem::path step_path(SequenceOptions const& options, int step);
+
+/// Puts files of steps, from the first on, in place: all or none. Throws MachineError.
+void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options);
+
+class StepFiles {
+ public:
+  /// `mesh` must outlive the files.
+  StepFiles(CaseFile const& case_file, LoadedMesh const& mesh);
+  StepFiles(StepFiles const&) = delete;
+  StepFiles& operator=(StepFiles const&) = delete;
+  ~StepFiles();
+
+  /// Writes the next step beside its place. Fields only with one file per step.
+  void add(Coordinates const& morphed, OutputFields const& fields);
+  /// Puts everything in place. Throws MachineError when a file cannot be renamed; those that were put in place before
+  /// it are taken away again.
+  void commit();
+
+ private:
+  CaseFile const& case_file_;
+  LoadedMesh const& mesh_;
+  MeshFormat format_;
+  int steps_ = 0;                     ///< folders written
+  std::deque<io::OutputFile> files_;  ///< of the steps so far
+  std::vector<std::filesystem::path>
+      folders_;  ///< of the steps so far, where each takes several files; emptied once they are to stay
+  std::optional<SeriesWriter> series_;
+};
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,16 @@
+// The report page of a wheel: verdict and numbers of all passages, quality and pictures of the worst one.
+#pragma once
+
+#include <gridmorph/run/run_page.hpp>
+#include <gridmorph/run/wheel_run.hpp>
+
+namespace gridmorph::cli {
+
+/// Pictures and numbers of the worst passage. run: with keep_worst(), after make(). Cost: as RunPage::finish().
+void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page);
+
+/// What the page is made from. report: that of the wheel, with its output.
+nlohmann::json wheel_page_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result,
+                               nlohmann::json const& report);
+
+}  // namespace gridmorph::cli

@@ -1,0 +1,405 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/coordinate_resolution.hpp>
+#include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/run/run.hpp>
+#include <gridmorph/run/wheel_run.hpp>
+
+#include <fmt/format.h>
+#include <Kokkos_Core.hpp>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace gridmorph::cli {
+
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+
+WheelPassage read(CaseFile const& case_file, Console& console) {
+  console.progress("reading " + case_file.input.string());
+  return WheelPassage(case_file);
+}
+
+/// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
+void place_zone(Exec const& exec, Zone const& zone, Pitches const& pitches, Coordinates const& from, Coordinates& to) {
+  Kokkos::parallel_for(
+      "gridmorph::wheel::turn",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, zone.first_node, zone.first_node + zone.size()),
+      [&](Index n) { to.set(n, pitches(from[n])); });
+}
+
+/// Adds what one passage gives; `zones`: numbers in the wheel of the zones of its sector.
+void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, int> const& zones) {
+  if (wheel.holds() && !passage.holds()) {
+    wheel.broken = passage.broken;
+    wheel.broken.worst_zone = zones.at(passage.broken.worst_zone);
+    wheel.broken.cells = 0;
+  }
+  wheel.cells += passage.cells;
+  wheel.zero += passage.zero;
+  wheel.flat_before += passage.flat_before;
+  wheel.negative += passage.negative;
+  wheel.undecided += passage.undecided;
+  wheel.broken.cells += passage.broken.cells;
+}
+
+}  // namespace
+
+WheelRun::WheelRun(CaseFile const& case_file, Console& console)
+    : case_(case_file),
+      console_(console),
+      sector_(read(case_file, console)),
+      mesh_(sector_.mesh()),
+      rows_(find_rows(mesh_, sector_.links(), case_file.motion.axis)),
+      setup_(wheel_setup(case_file, mesh_, rows_)),
+      wheel_(sector_.wheel(rows_, setup_.passages(),
+                           case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
+      shared_(sector_.links(), rows_, true) {
+  if (!case_file.clearances.empty()) clearances_.emplace(case_file, sector_.loaded().boundary());
+  time("read");
+}
+
+void WheelRun::time(std::string const& step) {
+  bool const once = step == "plan" || step == "read";
+  if (once || !case_.sequence)
+    add_time(times_, step, watch_.lap(), !once);
+  else
+    add_time(times_, fmt::format("{}, {} steps", step, setup_.moments.size()), watch_.lap(), false);
+}
+
+void WheelRun::prepare() {
+  console_.progress(sector_.loaded().kind().planning);
+  check_fields(case_, mesh_);
+  plan_ = plan_of(case_);
+  check_wave();
+  time("plan");
+  quality_.near = plan_->motion().plan().near_cells();
+  quality_.limits = case_.guard;
+  quality_.fast = wants_verdict(case_, sector_.loaded().n_cells());
+  baseline_ = sector_.loaded().measure(quality_);
+  time("quality");
+  morphed_ = Coordinates(mesh_.n_nodes());
+  placed_ = Coordinates(mesh_.n_nodes());
+  if (case_.guard.retry) {
+    retry();
+    time("retries");
+  }
+  notes_ = sector_.loaded().notes();
+  notes_.insert(notes_.end(), plan_->motion().notes().begin(), plan_->motion().notes().end());
+  if (!retried_.text.empty()) notes_.push_back(retried_.text);
+  console_.expect({});
+}
+
+/// Passages of a wave are one period of one motion, so that the last blade meets the first.
+void WheelRun::check_wave() const {
+  if (!setup_.has_wave()) return;
+  for (std::size_t m = 0; m < setup_.motions.size(); ++m) {
+    if (setup_.motions[m].same_rules != int(m)) continue;
+    for (Moment const& when : setup_.moments) {
+      auto const now = plan_->motion().displacement(int(m), setup_.at(int(m), when));
+      auto const later = plan_->motion().displacement(
+          int(m), setup_.at(int(m), {when.periods + 1, when.time + setup_.period, when.step}));
+      double size = 0, gap = 0;
+      for (std::size_t n = 0; n < now.size(); ++n) {
+        size = std::max(size, norm(now[n]));
+        gap = std::max(gap, distance(now[n], later[n]));
+      }
+      constexpr double same = 1e-9;  // of the displacement: phases are rounded
+      if (gap > same * std::max(size, 1e-6 * sector_.links().mesh_size))
+        throw MotionError(
+            fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a period ({:.6g}) later differs by "
+                        "{:.3g}, so that the last blade of the wave would not meet the first; give motions that "
+                        "repeat with the period of [sequence] (whole numbers of harmonic)",
+                        case_.source.string(), when.time, setup_.period, gap));
+    }
+  }
+}
+
+void WheelRun::move_to(int step) {
+  if (step == step_) return;
+  plan_->move(setup_.at(setup_.moments[std::size_t(step)]));
+  step_ = step;
+}
+
+/// Where the worst passage falls short: other recipes for it, and the best of them for all passages and steps.
+void WheelRun::retry() {
+  auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
+    (void)morph(by, boundary, morphed_);
+    quality_.morphed = &morphed_;
+    QualityReport const quality = sector_.loaded().measure(quality_);
+    return Trial{badness_of(quality),
+                 newly_inverted(quality) > 0 || any_failure(shortfalls(baseline_, quality, thresholds_of(case_)))};
+  };
+  int worst = -1, worst_step = 0;
+  Trial first;
+  for (int step = 0; step < int(setup_.moments.size()); ++step) {
+    move_to(step);
+    PassageMotions const& motions = plan_->passages();
+    for (int p = 0; p < motions.n_passages(); ++p) {
+      if (motions.first_alike(p) < p) continue;
+      Trial const now = trial_of(*plan_, motions.boundary(p));
+      if (worst >= 0 && !(first.badness < now.badness)) continue;
+      worst = p;
+      worst_step = step;
+      first = now;
+    }
+  }
+  if (!first.falls_short) return;
+  auto const at_worst = setup_.at(setup_.moments[std::size_t(worst_step)]);
+  std::unique_ptr<CaseFile> trying;  // plans refer to theirs
+  std::unique_ptr<PassagePlan> other;
+  retried_ = RecipeSearch{
+      .case_file = case_,
+      .unstructured = !mesh_.is_structured(),
+      .chains = false,
+      .smoothing = false,
+      .cells = sector_.loaded().kind().cells,
+      .progress = [&](std::string const& keys) { console_.progress("trying " + keys); },
+      .make =
+          [&](CaseFile const& recipe) {
+            other.reset();
+            trying = std::make_unique<CaseFile>(recipe);
+            other = plan_of(*trying);
+            other->move(at_worst);
+            return trial_of(*other, other->passages().boundary(worst));
+          },
+      .decide =
+          [&](std::unique_ptr<CaseFile> const& kept) {
+            if (!kept) return;
+            plan_ = std::move(other);
+            step_ = worst_step;
+            recipe_ = std::move(trying);
+          }}.run(first);
+  retried_.json["passage"] = worst + 1;
+  std::string where = fmt::format("passage {}", worst + 1);
+  if (case_.sequence) {
+    retried_.json["step"] = worst_step + 1;
+    where += fmt::format(" of step {}", worst_step + 1);
+  }
+  if (!retried_.text.empty()) retried_.text = fmt::format("{}, the worst one: {}", where, retried_.text);
+}
+
+GuardReport WheelRun::morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed) {
+  GuardReport const report = plan.morph(boundary, morphed);
+  time("morph");
+  return report;
+}
+
+PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates const& morphed) {
+  PassageResult passage;
+  for (Vec3 const& u : boundary) passage.largest_displacement = std::max(passage.largest_displacement, norm(u));
+  quality_.morphed = &morphed;
+  passage.quality = sector_.loaded().measure(quality_);
+  passage.shortfalls = mapping_warnings(case_);
+  auto const trims = plan_->motion().trims(boundary);
+  refuse_undone(trims, case_.guard.max_trim);
+  auto const trimmed = trimmed_beyond(case_.guard.max_trim, trims);
+  passage.shortfalls.insert(passage.shortfalls.end(), trimmed.begin(), trimmed.end());
+  auto const of_quality = shortfalls(baseline_, passage.quality, thresholds_of(case_));
+  passage.shortfalls.insert(passage.shortfalls.end(), of_quality.begin(), of_quality.end());
+  if (worst_of_.worst.empty() && newly_inverted(passage.quality) > 0)
+    worst_of_ = diagnose(case_, plan_->for_messages(), passage.quality, morphed);
+  time("quality");
+  return passage;
+}
+
+void WheelRun::take_worst(int passage, QualityReport const& quality, Coordinates const& morphed) {
+  Badness const badness = badness_of(quality);
+  if (worst_->passage >= 0 && !(worst_->badness < badness)) return;
+  worst_->passage = passage;
+  worst_->badness = badness;
+  if (worst_->morphed.size() == 0) worst_->morphed = Coordinates(morphed.size());
+  for (auto const& [to, from] : {std::pair(worst_->morphed.x, morphed.x), std::pair(worst_->morphed.y, morphed.y),
+                                 std::pair(worst_->morphed.z, morphed.z)})
+    Kokkos::deep_copy(exec_, to, from);
+  exec_.fence();
+}
+
+std::vector<Seams> WheelRun::new_seams() const {
+  std::vector<Seams> seams;
+  for (int r = 0; r < int(rows_.rows.size()); ++r)
+    seams.emplace_back(mesh_, shared_, rows_, r, setup_.blades[r].passages);
+  return seams;
+}
+
+std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams,
+                                   SeamGap& gap) {
+  std::map<int, int> zones;
+  for (int n = next; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == passage; ++n) {
+    int const z = wheel_.zones[n].zone;
+    zones[z] = n;
+    place_zone(exec_, mesh_.zones[z], rows_.rows[rows_.row_of_zone[z]].pitch.times(passage), morphed, placed_);
+  }
+  exec_.fence();
+  double mismatch = 0;
+  for (PassageLink const& link : sector_.links().all) mismatch = std::max(mismatch, link.mismatch);
+  // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
+  double const tolerance =
+      4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance),
+                                            sector_.links().mesh_size, coordinate_resolution(mesh_));
+  for (int r = 0; r < int(seams.size()); ++r) {
+    if (passage >= setup_.blades[r].passages) continue;
+    seams[r].close(passage, placed_);
+    SeamGap const& own = seams[r].largest_gap();
+    if (own.distance > gap.distance) gap = own;
+    if (own.distance > tolerance)
+      throw MotionError(
+          fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
+                      "periodic side must move alike on both sides of the passage{}",
+                      own.passage + 1, describe_node(mesh_, own.node), own.distance,
+                      rows_.rows[r].pitch.is_straight() ? "" : ", in cylindrical components"));
+  }
+  return zones;
+}
+
+void WheelRun::give(std::map<int, int> const& zones, ZoneSink const& sink) const {
+  Coordinates const written = sector_.in_file_order(placed_);
+  std::map<int, int> in_order;  // of the wheel
+  for (auto const& [of_sector, of_wheel] : zones) in_order[of_wheel] = of_sector;
+  for (auto const& [of_wheel, of_sector] : in_order) {
+    Index const first = mesh_.zones[of_sector].first_node;
+    sink(of_wheel, written.x.data() + first, written.y.data() + first, written.z.data() + first);
+  }
+}
+
+WheelMade WheelRun::make(int step, ZoneSink const& sink) {
+  move_to(step);
+  PassageMotions const& motions = plan_->passages();
+  WheelMade made;
+  made.whole.certificate.emplace();
+  made.whole.unstructured = baseline_.unstructured;
+  for (Zone const& zone : wheel_.mesh.zones) made.whole.zone_names.push_back(zone.name);
+  auto seams = new_seams();
+  int last = -1, next = 0;
+  int const n_passages = motions.n_passages(), n_steps = int(setup_.moments.size());
+  for (int p = 0; p < n_passages; ++p) {
+    console_.progress(n_steps > 1 ? fmt::format("step {} of {}, passage {} of {}", step + 1, n_steps, p + 1, n_passages)
+                                  : fmt::format("passage {} of {}", p + 1, n_passages),
+                      (step + double(p) / n_passages) / n_steps);
+    if (last < 0 || !motions.alike(p, last)) {
+      auto const boundary = motions.boundary(p);
+      GuardReport const relaxed = morph(*plan_, boundary, morphed_);
+      last = p;
+      int const same = motions.first_alike(p);  // before p: it has been measured
+      made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
+      if (same == p && worst_) take_worst(p, made.passages.back().quality, morphed_);
+      if (same == p && relaxed.before > 0)
+        made.notes.push_back(
+            fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
+                        relaxed.before, sector_.loaded().kind().lost, relaxed.rounds, relaxed.after));
+    } else {
+      made.passages.push_back(made.passages.back());
+    }
+    made.passages.back().blades = blades_of(p);
+    made.passages.back().clearances = clearances_of(p, morphed_);
+    auto const zones = place(p, next, morphed_, seams, made.gap);
+    next += int(zones.size());
+    time("turn");
+    certify_zones(zones, *made.whole.certificate);
+    give(zones, sink);
+    time("write");
+  }
+  return made;
+}
+
+void WheelRun::make_baseline(ZoneSink const& sink) {
+  auto seams = new_seams();
+  SeamGap gap;
+  int next = 0;
+  for (int p = 0; p < plan_->passages().n_passages(); ++p) {
+    auto const zones = place(p, next, mesh_.coordinates, seams, gap);
+    next += int(zones.size());
+    give(zones, sink);
+  }
+  time("write");
+}
+
+WheelResult WheelRun::result(WheelMade made) {
+  WheelResult out{std::move(made), baseline_, times_, wheel_.n_nodes()};
+  out.notes.insert(out.notes.begin(), notes_.begin(), notes_.end());
+  auto const fields = mapping_notes(case_);
+  out.notes.insert(out.notes.end(), fields.begin(), fields.end());
+  return out;
+}
+
+/// Of a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
+void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
+  std::vector<int> own;
+  for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
+  add_passage(wheel, certify(sector_.loaded().indexed(), placed_, own), zones);
+  time("quality");
+}
+
+std::vector<std::string> WheelRun::blades_of(int passage) const {
+  std::vector<std::string> out;
+  for (std::size_t r = 0; r < rows_.rows.size(); ++r)
+    if (rows_.rows[r].periodic() && passage < setup_.blades[r].passages)
+      out.push_back(setup_.motions[std::size_t(setup_.blades[r].blades[passage])].name);
+  return out;
+}
+
+std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const& morphed) const {
+  std::vector<TipClearance> out;
+  if (!clearances_) return out;
+  std::vector<Vec3> const boundary = plan_->passages().boundary(passage);
+  std::map<std::array<double, 3>, std::size_t> asked;  // nodes of several zones at one place are asked once
+  auto const key = [](Vec3 const& x) { return std::array{x.x, x.y, x.z}; };
+  auto const& nodes = plan_->passages().nodes();
+  for (std::size_t n = 0; n < nodes.size(); ++n) asked.try_emplace(key(nodes[n].place), n);
+  auto const by_rule = [&](std::span<Index const> tip, std::span<Vec3> u) {
+    for (std::size_t n = 0; n < tip.size(); ++n) {
+      auto const found = asked.find(key(mesh_.coordinates[tip[n]]));
+      if (found == asked.end()) return false;
+      u[n] = boundary[found->second];
+    }
+    return true;
+  };
+  for (std::size_t t = 0; t < clearances_->size(); ++t) {
+    auto const& tip = clearances_->nodes_of_tip(t);
+    auto const row = std::size_t(tip.empty() ? 0 : rows_.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
+    if (passage >= setup_.blades[row].passages) continue;
+    TipClearance found = clearances_->of(t, morphed, by_rule);
+    auto const turned = rows_.rows[row].pitch.times(passage);
+    found.before.at = turned(found.before.at);
+    if (found.by_rule) found.by_rule->at = turned(found.by_rule->at);
+    found.after.at = turned(found.after.at);
+    out.push_back(std::move(found));
+  }
+  return out;
+}
+
+bool any_inverted(WheelMade const& made) {
+  return !made.whole.certificate->holds() || std::any_of(made.passages.begin(), made.passages.end(),
+                                                         [](auto const& p) { return newly_inverted(p.quality) > 0; });
+}
+
+std::string wheel_text(WheelRun const& run, WheelResult const& result) {
+  std::string text;
+  for (auto const& note : result.notes) text += "note: " + note + "\n";
+  text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
+  text += certificate_text(result.whole) + flat_text(result.whole);
+  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
+                      result.gap.distance);
+  if (auto const tips = wheel_clearances(result); !tips.empty()) text += "\n" + tips;
+  return text + "\n" + format_times(result.times, result.nodes);
+}
+
+nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result) {
+  nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  if (!run.retried().is_null()) json["retry"] = run.retried();
+  return json;
+}
+
+std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what) {
+  return refusal(output.string(), what, run.diagnosis(),
+                 "move the blades less, " + (run.sector().mesh().is_structured()
+                                                 ? run.sector().loaded().kind().change
+                                                 : std::string("change [near_field], set retry = true in [guard]")));
+}
+
+}  // namespace gridmorph::cli

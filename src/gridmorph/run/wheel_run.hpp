@@ -1,0 +1,118 @@
+// Morphs, measures and turns the passages of a wheel, one at a time, at one time or at several.
+#pragma once
+
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/run/clearances.hpp>
+#include <gridmorph/run/console.hpp>
+#include <gridmorph/run/recipe.hpp>
+#include <gridmorph/run/wheel_passage.hpp>
+#include <gridmorph/run/wheel_text.hpp>
+#include <gridmorph/wheel/shared_nodes.hpp>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gridmorph::cli {
+
+/// Takes a zone of the wheel, in the order of its file.
+using ZoneSink = std::function<void(int zone, double const* x, double const* y, double const* z)>;
+
+/// The passage whose cells came out worst.
+struct WorstPassage {
+  int passage = -1;  ///< none yet
+  Badness badness;
+  Coordinates morphed;  ///< where the sector is
+};
+
+class WheelRun {
+ public:
+  /// Reads the passage. The case file must outlive the run.
+  WheelRun(CaseFile const& case_file, Console& console);
+
+  [[nodiscard]] WheelPassage const& sector() const { return sector_; }
+  [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
+  [[nodiscard]] WheelRows const& rows() const { return rows_; }
+  [[nodiscard]] WheelSetup const& setup() const { return setup_; }
+  /// What went wrong in the first passage with inverted cells.
+  [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
+  [[nodiscard]] nlohmann::json const& retried() const { return retried_.json; }
+
+  /// Plans once for all passages and times, measures the baseline, and tries other recipes where the case file says so.
+  /// Throws MotionError where blades in a wave do not come back after a period.
+  void prepare();
+  /// From here on make() keeps the mesh of the worst passage. Cost: a copy of it.
+  void keep_worst() { worst_.emplace(); }
+  [[nodiscard]] WorstPassage const& worst() const { return *worst_; }
+  [[nodiscard]] NearCells const& near() const { return quality_.near; }
+
+  /// The wheel at a step, passage by passage.
+  WheelMade make(int step, ZoneSink const& sink);
+  /// The passages as they are in the baseline, each in its place and closed to its neighbours.
+  void make_baseline(ZoneSink const& sink);
+  /// What all of it has in common. `made`: of the wheel that is told.
+  WheelResult result(WheelMade made);
+  /// Adds the time since the last one to a step of that name.
+  void time(std::string const& step);
+
+ private:
+  [[nodiscard]] std::unique_ptr<PassagePlan> plan_of(CaseFile const& case_file) const {
+    return std::make_unique<PassagePlan>(sector_, case_file, rows_, setup_);
+  }
+  void retry();
+  void check_wave() const;
+  void move_to(int step);
+  GuardReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
+  PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
+  void take_worst(int passage, QualityReport const& quality, Coordinates const& morphed);
+  [[nodiscard]] std::vector<Seams> new_seams() const;
+  /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of
+  /// the sector.
+  std::map<int, int> place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams, SeamGap& gap);
+  void give(std::map<int, int> const& zones, ZoneSink const& sink) const;
+  void certify_zones(std::map<int, int> const& zones, Certificate& wheel);
+  [[nodiscard]] std::vector<std::string> blades_of(int passage) const;
+  [[nodiscard]] std::vector<TipClearance> clearances_of(int passage, Coordinates const& morphed) const;
+
+  CaseFile const& case_;
+  Console& console_;
+  Stopwatch watch_;
+  Kokkos::DefaultHostExecutionSpace exec_;
+  StepTimes times_;
+  std::vector<std::string> notes_;
+  QualityReport baseline_;
+  Retried retried_;
+  Diagnosis worst_of_;
+  WheelPassage sector_;
+  Mesh const& mesh_;
+  WheelRows rows_;
+  WheelSetup setup_;
+  WheelMesh wheel_;
+  SharedNodes shared_;
+  std::optional<Clearances> clearances_;  ///< where the case file asks for them
+  QualityWanted quality_;
+  std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
+  std::unique_ptr<PassagePlan> plan_;
+  int step_ = 0;  ///< that the plan's passages are of
+  Coordinates morphed_, placed_;
+  std::optional<WorstPassage> worst_;
+};
+
+/// Whether cells are inverted that the baseline has sound.
+bool any_inverted(WheelMade const& made);
+
+/// What `gridmorph wheel` prints for a wheel at one time.
+std::string wheel_text(WheelRun const& run, WheelResult const& result);
+/// The same for its report.
+nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result);
+/// Why a wheel is not written.
+std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what);
+
+/// A wheel at every step of [sequence], into one file per step or one with a series. Returns the exit status.
+int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::filesystem::path const& output,
+                   std::optional<std::filesystem::path> const& report, Console& console);
+
+}  // namespace gridmorph::cli
