@@ -318,7 +318,7 @@ void read_results(TableReader& root, CaseFile& out) {
         "the largest share of a displacement that slip surfaces may undo, 0 < value <= 1");
     if (auto const mode = guard->choice("quality", {"auto", "full", "fast"})) out.guard.quality = QualityMode(*mode);
     out.guard.write_inverted = guard->boolean("write_inverted").value_or(false);
-    out.guard.retry = guard->boolean("retry").value_or(false);
+    out.guard.retry = guard->boolean("retry");
     out.guard.freeze = guard->boolean("freeze").value_or(false);
     out.guard.smooth = guard->boolean("smooth").value_or(false);
     if (auto const steps = guard->integer("steps")) {

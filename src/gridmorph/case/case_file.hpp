@@ -32,7 +32,8 @@ enum class QualityMode { automatic, full, fast };
 struct GuardOptions : CellLimits {
   bool write_inverted = false;  ///< write a mesh with inverted cells all the same
   QualityMode quality = QualityMode::automatic;
-  bool retry = false;   ///< try other recipes where the mesh falls short
+  /// Try other recipes where the mesh falls short; not said: where cells of blocks are inverted.
+  std::optional<bool> retry;
   bool smooth = false;  ///< move nodes where cells of blocks lost their shape
   bool freeze = false;  ///< what the guard does becomes a linear part of the plan
   /// Share of the largest displacement of a rule that may lead off slip surfaces before a morph falls short.

@@ -60,7 +60,7 @@ class Ignored {
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
-    if (use_.run != CaseUse::Run::wheel && !case_.guard.smooth && !case_.guard.retry)
+    if (use_.run != CaseUse::Run::wheel && !case_.guard.smooth && !case_.guard.retry.value_or(false))
       refuse("guard", "freeze", "keeps what smooth or retry do, and neither is true; use smooth = true");
   }
 

@@ -1,5 +1,6 @@
 #include <gridmorph/command/commands.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/run_files.hpp>
 #include <gridmorph/run/wheel_page.hpp>

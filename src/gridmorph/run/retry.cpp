@@ -8,29 +8,20 @@
 
 namespace gridmorph::cli {
 
-Retried Run::retry(std::vector<Moment> const& moments) {
-  Moment const* when = nullptr;
-  auto const judged = [&] {
-    return Trial{badness_of(result_.quality),
-                 newly_inverted(result_.quality) > 0 || any_failure(shortfalls_of(result_.quality))};
-  };
-  if (!moments.empty()) {
-    std::optional<Badness> most;
-    for (std::size_t step = 0; step < moments.size(); ++step) {
-      console_.progress(fmt::format("looking for the worst step, {} of {}", step + 1, moments.size()));
-      (void)morph(&moments[step]);
-      measure();
-      if (Badness const now = badness_of(result_.quality); !most || *most < now) {
-        most = now;
-        when = &moments[step];
-      }
-    }
-    (void)morph(when);
-    measure();
-  }
-  Trial const first = judged();
-  if (!first.falls_short) return {};
+/// Inverted cells are what is mended unasked; who asks wants the limits kept too.
+bool Run::falls_short(QualityReport const& quality) const {
+  return newly_inverted(quality) > 0 || (case_file_.guard.retry.value_or(false) && any_failure(shortfalls_of(quality)));
+}
 
+bool Run::wants_retry() const {
+  if (!falls_short(result_.quality)) return false;
+  GuardOptions const& guard = case_file_.guard;
+  if (guard.retry) return *guard.retry;
+  return mesh_->is_structured() && !guard.write_inverted &&
+         likely_causes(case_file_, plan_->for_messages(), result_.morphed).empty();
+}
+
+bool Run::retry(Moment const* when, Guarded& guarded, std::vector<Moment> const& moments) {
   struct Before {
     Result result;
     std::vector<Vec3> displacement;
@@ -38,7 +29,9 @@ Retried Run::retry(std::vector<Moment> const& moments) {
   };
   std::optional<Before> before;
   bool const elements = result_.quality.unstructured;
-  Retried out = RecipeSearch{
+  auto const judged = [&] { return Trial{badness_of(result_.quality), falls_short(result_.quality)}; };
+  bool kept_any = false;
+  Retried tried = RecipeSearch{
       .case_file = case_file_,
       .unstructured = elements,
       .chains = !elements,
@@ -60,17 +53,20 @@ Retried Run::retry(std::vector<Moment> const& moments) {
             if (kept) {
               before.reset();  // the plan before refers to the case file that goes
               recipe_ = std::move(kept);
+              kept_any = true;
               return;
             }
             plan_ = std::move(before->plan);
             result_ = std::move(before->result);
             displacement_ = std::move(before->displacement);
-          }}.run(first);
-  if (when != nullptr && !out.text.empty()) {
-    out.json["step"] = when->step;
-    out.text = fmt::format("step {}, the worst one: {}", when->step, out.text);
+          }}.run(judged());
+  if (when != nullptr && !tried.text.empty()) {
+    tried.json["step"] = when->step;
+    tried.text = fmt::format("step {}, the worst one: {}", when->step, tried.text);
   }
-  return out;
+  if (!tried.json["tried"].empty()) guarded.json["retry"] = std::move(tried.json);
+  if (!tried.text.empty()) guarded.notes.push_back(std::move(tried.text));
+  return kept_any;
 }
 
 }  // namespace gridmorph::cli

@@ -146,7 +146,7 @@ void Run::freeze_guard(std::vector<Moment> const& moments) {
   }
 }
 
-FrozenIntoPlan Run::freeze_into_plan(std::vector<Moment> const& moments) {
+void Run::freeze_into_plan(Guarded& guarded, std::vector<Moment> const& moments) {
   Coordinates plain(mesh_->n_nodes());
   if (moments.empty()) {
     plan_->morph(displacement_, plain, nullptr);
@@ -167,18 +167,19 @@ FrozenIntoPlan Run::freeze_into_plan(std::vector<Moment> const& moments) {
     plan_->morph(displacement_, result_.morphed, nullptr);
     measure();
   }
-  return {map.n_modes == 0
-              ? std::string("the guard moved no node: there is nothing to freeze into the plan")
-              : fmt::format("the guard is frozen into the plan: {} nodes move by a linear function of the "
-                            "boundary's displacement, {} of {} displacements, by {:.3g} at most and "
-                            "within {:.3g} of where the guard had them",
-                            map.n_moved(), map.n_modes == 1 ? "one mode" : fmt::format("{} modes", map.n_modes),
-                            map.n_records, map.largest_shift, map.misfit),
-          {{"displacements", map.n_records},
-           {"modes", map.n_modes},
-           {"nodes", map.n_moved()},
-           {"largest_shift", map.largest_shift},
-           {"largest_distance", map.misfit}}};
+  guarded.notes.push_back(
+      map.n_modes == 0
+          ? std::string("the guard moved no node: there is nothing to freeze into the plan")
+          : fmt::format("the guard is frozen into the plan: {} nodes move by a linear function of the "
+                        "boundary's displacement, {} of {} displacements, by {:.3g} at most and "
+                        "within {:.3g} of where the guard had them",
+                        map.n_moved(), map.n_modes == 1 ? "one mode" : fmt::format("{} modes", map.n_modes),
+                        map.n_records, map.largest_shift, map.misfit));
+  guarded.json["frozen_guard"] = {{"displacements", map.n_records},
+                                  {"modes", map.n_modes},
+                                  {"nodes", map.n_moved()},
+                                  {"largest_shift", map.largest_shift},
+                                  {"largest_distance", map.misfit}};
 }
 
 void Run::measure() {
@@ -328,241 +329,6 @@ std::string Run::refusal_of(std::filesystem::path const& output, std::string con
                             std::string const& advice) const {
   return refusal(output.string(), what + " inverted that were not in the baseline",
                  diagnose(case_file_, plan_->for_messages(), result_.quality, result_.morphed), advice);
-}
-
-int conclude(Ending const& ending, Console& console) {
-  auto const report = [&] {
-    nlohmann::json json = ending.json();
-    json["output"] = ending.written ? nlohmann::json(ending.output.string()) : nlohmann::json(nullptr);
-    return json;
-  };
-  // The report waits beside its place until the mesh is there: both appear, or none. It has room to spare for the time
-  // that writing the mesh takes.
-  std::optional<PendingFile> pending, page;
-  if (ending.report) pending.emplace(*ending.report, json_text(report()) + std::string(room_for_a_time, '\n'));
-  if (ending.page) page.emplace(*ending.page, ending.page_text(report()) + std::string(room_for_a_time, '\n'));
-  if (ending.written) console.progress("writing " + ending.output.string());
-  ending.write();
-  nlohmann::json const json = report();
-  if (pending) {
-    pending->replace(json_text(json));
-    pending->commit();
-  }
-  if (page) {
-    page->replace(ending.page_text(json));
-    page->commit();
-  }
-  console.say(ending.text() + (ending.written ? ending.wrote : std::string()) + ending.also_wrote);
-  console.document(json);
-  for (auto const& warning : ending.warnings) console.warn(warning);
-  if (!ending.written) console.error(ending.refusal());
-  return status_of_morph(ending.written, ending.falls_short);
-}
-
-std::string wrote_report(std::optional<std::filesystem::path> const& report) {
-  return report ? fmt::format("wrote {}\n", report->string()) : std::string();
-}
-
-std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls) {
-  std::vector<std::string> out;
-  for (auto const& s : shortfalls) out.push_back(s.message);
-  return out;
-}
-
-namespace {
-
-/// Files that [output] stages writes, as far as they are known before there is a plan: which stages blocks have is not,
-/// so of these what is there already, and what has the name of a stage among the other outputs.
-RunFiles stage_files(std::filesystem::path const& folder, MeshKind kind, RunFiles const& others) {
-  RunFiles out;
-  auto const add = [&](std::filesystem::path const& path) { out.push_back({"stage", path, true}); };
-  if (kind == MeshKind::unstructured) {
-    for (char const* name : stage_names) add(folder / name);
-    return out;
-  }
-  add(folder / stage_list_name);
-  std::error_code error;
-  for (auto const& entry : std::filesystem::directory_iterator(folder, error))
-    if (is_stage_of_blocks(entry.path())) add(entry.path());
-  std::size_t const n_there = out.size();
-  for (RunFile const& other : others) {
-    auto const at = folder / other.path.filename();
-    bool const is_there = std::any_of(out.begin(), out.begin() + std::ptrdiff_t(n_there),
-                                      [&](RunFile const& stage) { return stage.path == at; });
-    if (!is_there && is_stage_of_blocks(at)) add(at);
-  }
-  return out;
-}
-
-bool is_dot(std::filesystem::path const& path) { return path.extension() == ".dot" || path.extension() == ".gv"; }
-
-}  // namespace
-
-int morph_once(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
-  auto const& options = case_file.output_options;
-  RunFiles outputs = outputs_of(case_file.output, options.report);
-  if (options.stages) {
-    auto const stages = stage_files(*options.stages, file.kind, outputs);
-    outputs.insert(outputs.end(), stages.begin(), stages.end());
-  }
-  if (options.page) outputs.push_back({"page", *options.page});
-  if (options.vtk) outputs.push_back({"VTK file", *options.vtk});
-  check_run_files(inputs_of(case_file, file), outputs);
-  console.expect(file.traits().costs);
-  std::optional<RunPage> page;
-  if (options.page) page.emplace(case_file, typed);
-  Run run(case_file, file, console);
-  if (page) run.keep_measures();
-  GuardReport const relaxed = run.morph(nullptr, &run.times);
-  std::vector<std::string> guarded;
-  if (relaxed.before > 0)
-    guarded.push_back(fmt::format("{} {}; displacements around them are smoothed in {} rounds, {} are left",
-                                  relaxed.before, run.mesh().kind().lost, relaxed.rounds, relaxed.after));
-  if (relaxed.middles > 0)
-    guarded.push_back(
-        fmt::format("{} nodes between corners are pulled where they alone broke elements", relaxed.middles));
-  console.progress("measuring quality");
-  Stopwatch watch;
-  run.measure_baseline();
-  run.measure();
-  run.times.push_back({"quality", watch.lap(), true});
-  if (newly_inverted(run.quality()) > 0) {
-    console.expect({});  // how many steps it will take is not known
-    auto const tried = run.try_steps();
-    guarded.insert(guarded.end(), tried.notes.begin(), tried.notes.end());
-    if (!tried.text.empty()) {
-      guarded.push_back(tried.text);
-      run.times.push_back({"steps", watch.lap(), true});
-    }
-  }
-  nlohmann::json retried;
-  if (case_file.guard.retry && any_failure(run.shortfalls_of(run.quality()))) {
-    console.expect({});
-    watch.lap();
-    Retried const retry = run.retry();
-    retried = retry.json;
-    if (!retry.text.empty()) guarded.push_back(retry.text);
-    run.times.push_back({"retries", watch.lap(), true});
-  }
-  nlohmann::json frozen;
-  if (case_file.guard.freeze) {
-    watch.lap();
-    FrozenIntoPlan freeze = run.freeze_into_plan();
-    frozen = std::move(freeze.json);
-    guarded.push_back(std::move(freeze.text));
-    run.times.push_back({"freeze", watch.lap(), true});
-  }
-  run.notes = run.plan().notes();
-  run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
-  watch.lap();
-  PlanOutcome const outcome = run.plan().outcome(run.morphed(), run.quality().fast, true);
-  auto const clearances = run.clearances();
-  run.notes.insert(run.notes.end(), outcome.notes.begin(), outcome.notes.end());
-  add_time(run.times, "quality", watch.lap());
-
-  bool const written = newly_inverted(run.quality()) == 0 || case_file.guard.write_inverted;
-  std::string advice = "move the boundary less, " + file.traits().change;
-  if (!written) {
-    ValidShare const share = run.largest_valid_share();
-    if (share.percent > 0)
-      advice = fmt::format("morph what is valid with --fraction {:.2f}, ", share.percent / 100.0) + advice;
-    std::string const valid =
-        fmt::format("valid up to {} % of the motion, every cell of that certified", share.percent) +
-        (share.broken.empty() ? "" : fmt::format("; at {} % {}", share.percent + 1, share.broken));
-    run.notes.push_back(valid);
-    advice = valid + ": " + advice;
-  }
-  auto shortfalls = run.shortfalls_of_motion();
-  auto const of_quality = run.shortfalls_of(run.quality());
-  shortfalls.insert(shortfalls.end(), of_quality.begin(), of_quality.end());
-  if (page) {
-    console.progress("drawing the page");
-    watch.lap();
-    page->begin(run);
-    page->finish(run, run.quality());
-    run.times.push_back({"page", watch.lap()});
-  }
-  if (written) run.times.push_back({"write", 0, true});
-  std::string const vtk = options.vtk ? fmt::format("wrote {}\n", options.vtk->string()) : std::string();
-  std::string stages;
-  if (options.stages)
-    stages = fmt::format("wrote {} to {}\n",
-                         file.kind == MeshKind::structured ? "the mesh after every stage" : "wrap and background mesh",
-                         options.stages->string());
-  return conclude({.output = case_file.output,
-                   .report = options.report,
-                   .page = options.page,
-                   .written = written,
-                   .falls_short = any_failure(shortfalls),
-                   .json =
-                       [&] {
-                         nlohmann::json json = run.json(run.quality(), outcome);
-                         if (!clearances.empty()) json["clearances"] = clearance_json(clearances);
-                         if (!retried.is_null()) json["retry"] = retried;
-                         if (!frozen.is_null()) json["frozen_guard"] = frozen;
-                         return json;
-                       },
-                   .page_text = [&](nlohmann::json const& report) { return page->text(report); },
-                   .write =
-                       [&] {
-                         watch.lap();
-                         if (written) {
-                           run.mesh().write(case_file.input, case_file.output, run.morphed(),
-                                            holds_fields(file.format) ? run.fields() : OutputFields());
-                           if (options.vtk) run.mesh().write_vtk(*options.vtk, run.morphed(), run.fields());
-                           add_time(run.times, "write", watch.lap());
-                           if (page) page->add_output(case_file.output);
-                           if (page) add_time(run.times, "page", watch.lap(), false);
-                         }
-                         if (options.stages) run.write_stages(*options.stages);
-                       },
-                   .text =
-                       [&] {
-                         // Notes of a plan without a headline go straight on to what follows.
-                         return run.head() + (run.plan().headline().empty() ? "" : "\n") +
-                                (clearances.empty() ? "" : clearance_table(clearances) + "\n") +
-                                run.tables(run.quality(), outcome);
-                       },
-                   .wrote = fmt::format("\nwrote {}\n", case_file.output.string()) + vtk,
-                   .also_wrote = wrote_report(options.report) + wrote_report(options.page) + stages,
-                   .warnings = console.quiet() ? messages_of(shortfalls) : std::vector<std::string>(),
-                   .refusal = [&] { return run.refusal_of(case_file.output, file.traits().cells + " are", advice); }},
-                  console);
-}
-
-void print_plan(CaseFile const& case_file, Console& console, PlanPrinting const& options) {
-  auto const& graph = options.graph;
-  MeshSource const file =
-      checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
-  if (graph) {
-    if (file.kind == MeshKind::unstructured)
-      throw ConfigError(case_file.input.string() + " is unstructured: there are no blocks to draw; leave out --graph");
-    check_run_files(inputs_of(case_file, file), {{"drawing", *graph}});
-  }
-  if (file.kind == MeshKind::unstructured && case_file.plan.volume.order == OrderBy::prediction)
-    throw ConfigError(case_file.input.string() +
-                      " is unstructured: there are no chains to put in order; leave out --optimise");
-  Run run(case_file, file, console);
-  PlanPrediction const prediction = run.predict();
-  for (auto const& warning : prediction.warnings) console.warn(warning);
-  for (auto const& s : run.shortfalls_of_motion()) console.warn(s.message);
-  nlohmann::json json = run.plan().json();
-  if (!prediction.json.is_null()) json["prediction"] = prediction.json;
-  json["gridmorph"] = GRIDMORPH_VERSION;
-  json["case_file"] = case_file.source.string();
-  json["input"] = case_file.input.string();
-  json["nodes"] = run.mesh().n_nodes();
-  json["notes"] = run.notes;
-  json["times"] = times_json(run.times, run.mesh().n_nodes());
-  if (graph) {
-    PendingFile drawing(*graph, is_dot(*graph) ? dot_text(*run.plan().graph()) : svg_text(*run.plan().graph()));
-    drawing.commit();
-  }
-  console.document(json);
-  if (!console.json())
-    console.result(run.plan().text(options.all) + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
-                   format_times(run.times, run.mesh().n_nodes()) +
-                   (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
 }
 
 }  // namespace gridmorph::cli

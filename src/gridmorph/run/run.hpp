@@ -37,10 +37,10 @@ struct TriedSteps {
   std::vector<std::string> notes;  ///< numbers of steps that could not be planned
 };
 
-/// What the guard did, as a part of the plan.
-struct FrozenIntoPlan {
-  std::string text;  ///< for people
-  nlohmann::json json;
+/// What guards, other recipes and freezing did to a run.
+struct Guarded {
+  std::vector<std::string> notes;                  ///< for people
+  nlohmann::json json = nlohmann::json::object();  ///< "retry", "frozen_guard" of reports, where there is any
 };
 
 /// How much of a motion leaves every cell valid.
@@ -71,16 +71,20 @@ class Run {
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the
   /// best stays the result.
   TriedSteps try_steps();
-  /// Where the result falls short: the same motion with other modes and turns of the near field, with the best of them
-  /// other laws, of that the predicted order of chains, and of that what smoothing makes, until nothing falls short.
-  /// What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest determinant stays
-  /// the result, with its plan. Of a sequence the worst of its moments is what is made again, and all have that plan.
-  /// Cost: a plan, a morph and a measurement each, up to ten of them, and one smoothing; before that a morph and a
-  /// measurement per moment.
-  Retried retry(std::vector<Moment> const& moments = {});
+  /// Whether other recipes are to be tried for the result. [guard] retry says so where it falls short; where that says
+  /// nothing, blocks whose cells are inverted are made again unless they are to be written as they are, or the cause
+  /// looks like one that no recipe mends: another unit, another axis.
+  [[nodiscard]] bool wants_retry() const;
+  /// The motion of the result, which is that of this moment, with other modes and turns of the near field, with the
+  /// best of them other laws, of that the predicted order of chains, and of that what smoothing makes, until nothing
+  /// falls short. What has the fewest inverted cells, then the fewest beyond a limit, then the largest smallest
+  /// determinant stays the result, and its plan that of all moments. `moments`: of a sequence, all. Returns whether
+  /// another recipe than the case file's was kept. Cost: a plan, a morph and a measurement each, up to ten of them, and
+  /// one smoothing; room for two plans and results.
+  bool retry(Moment const* when, Guarded& guarded, std::vector<Moment> const& moments = {});
   /// Makes what the guard did to the result, or does at these moments (at most SmoothingRecord::most of them, evenly
   /// spaced), a linear part of the plan; the result then is what that gives. Cost: a morph and a guard per moment.
-  FrozenIntoPlan freeze_into_plan(std::vector<Moment> const& moments = {});
+  void freeze_into_plan(Guarded& guarded, std::vector<Moment> const& moments = {});
   /// The largest whole percentage of the motion, every rule at that share of its amplitude, at which the certificate
   /// holds, found by halving: at most seven morphs. The result stays as it is.
   ValidShare largest_valid_share();
@@ -126,6 +130,9 @@ class Run {
   StepTimes times;
 
  private:
+  /// What other recipes are tried for.
+  [[nodiscard]] bool falls_short(QualityReport const& quality) const;
+
   struct Result {
     Coordinates morphed;
     QualityReport quality;
@@ -146,31 +153,6 @@ class Run {
   mutable std::optional<Clearances> clearances_;  ///< once they are asked for
   Result result_;
 };
-
-/// How a run ends: meshes and report appear together, or a message says why not.
-struct Ending {
-  std::filesystem::path output;
-  std::optional<std::filesystem::path> report;
-  std::optional<std::filesystem::path> page = {};  ///< the report as a page
-  bool written = false;                            ///< the meshes are wanted
-  bool falls_short = false;
-  std::function<nlohmann::json()> json;  ///< the report, less the name of the output
-  std::function<std::string(nlohmann::json const& report)> page_text = {};
-  std::function<void()> write;        ///< puts meshes in place, where they are wanted
-  std::function<std::string()> text;  ///< for people
-  std::string wrote;                  ///< after it, where the meshes are written
-  std::string also_wrote;             ///< after that, in any case
-  std::vector<std::string> warnings = {};
-  std::function<std::string()> refusal;
-};
-
-/// Returns the exit status.
-int conclude(Ending const& ending, Console& console);
-
-/// "wrote report.json"; empty without a report.
-std::string wrote_report(std::optional<std::filesystem::path> const& report);
-/// What quiet runs are told, since no table says it.
-std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls);
 
 /// `gridmorph morph`: one mesh. Writes it and the report, prints the tables. Throws ConfigError before any work when an
 /// output cannot be written where it should. typed: the command line, for the page.

@@ -2,6 +2,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/report/measure_text.hpp>
+#include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/run_files.hpp>
 #include <gridmorph/run/run_page.hpp>
@@ -154,154 +155,229 @@ std::string shortfall_text(std::vector<StepResult> const& results) {
                      count == 1 ? "it is" : "the first is", first - results.begin() + 1, first->shortfall);
 }
 
-/// What the guard did in the steps.
-std::vector<std::string> guard_notes(Index relaxed, std::string const& lost,
-                                     std::map<int, std::string> const& stepped) {
-  constexpr std::size_t most_notes = 8;  // of more of them the number
-  std::vector<std::string> notes;
-  if (relaxed > 0)
-    notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed, lost));
-  std::size_t shown = 0;
-  for (auto const& [step, text] : stepped)
-    if (shown++ < most_notes) notes.push_back(fmt::format("step {}: {}", step + 1, text));
-  if (shown > most_notes) notes.push_back(fmt::format("the same in {} more steps", shown - most_notes));
-  return notes;
-}
+class Sequence {
+ public:
+  Sequence(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed)
+      : case_file_(case_file),
+        options_(*case_file.sequence),
+        file_(file),
+        console_(console),
+        page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
+        run_(case_file, file, console) {
+    for (int step = 0; step < options_.steps; ++step) moments_.push_back(options_.moment(step));
+  }
+
+  int operator()() {
+    if (page_) run_.keep_measures();
+    run_.measure_baseline();
+    console_.expect({});
+    part_.lap();
+    find_lost_shapes();
+    // Recipes that were asked for are tried on meshes that are guarded as such.
+    bool const freezes_later = case_file_.guard.freeze && case_file_.guard.retry.value_or(false);
+    if (!freezes_later) freeze();
+    if (page_) page_->begin(run_);
+    make_steps();
+    if (bool const kept = retry(); kept || freezes_later) {
+      freeze();
+      make_steps();
+    }
+    look_at_worst();
+    draw_page();
+    return end();
+  }
+
+ private:
+  void find_lost_shapes() {
+    if (!case_file_.guard.smooth) return;
+    console_.progress("looking for cells that lose their shape");
+    run_.freeze_guard(moments_);
+    run_.times.push_back({"guard, all steps", part_.lap()});
+  }
+
+  void freeze() {
+    if (!case_file_.guard.freeze) return;
+    run_.freeze_into_plan(guarded_, moments_);
+    add_time(run_.times, "freeze", part_.lap(), false);
+  }
+
+  /// Other recipes for the worst step, and for all of them what mends it.
+  bool retry() {
+    Moment const& moment = moments_[worst_for_retry_];
+    if (!case_file_.guard.retry.value_or(true) || !make_again(moment) || !run_.wants_retry()) return false;
+    part_.lap();
+    bool const kept = run_.retry(&moment, guarded_, moments_);
+    run_.times.push_back({"retries", part_.lap()});
+    return kept;
+  }
+
+  /// A step once more; false where there is no need to look at it.
+  bool make_again(Moment const& moment) {
+    if (!case_file_.guard.retry && !inverted_) return false;
+    (void)run_.morph(&moment);
+    run_.measure();
+    return true;
+  }
+
+  void make_steps() {
+    results_.clear();
+    stepped_.clear();
+    relaxed_ = 0;
+    worst_ = worst_for_retry_ = 0;
+    inverted_ = false;
+    files_.emplace(case_file_, run_.mesh());
+    for (int step = 0; step < options_.steps; ++step) {
+      console_.progress(fmt::format("step {} of {}", step + 1, options_.steps), double(step) / options_.steps);
+      make_step(step);
+    }
+  }
+
+  void make_step(int step) {
+    std::string const count = fmt::format(", {} steps", options_.steps);
+    Moment const& moment = moments_[std::size_t(step)];
+    part_.lap();
+    relaxed_ = std::max(relaxed_, run_.morph(&moment).before);
+    add_time(run_.times, "morph" + count, part_.lap(), false);
+    run_.measure();
+    if (!case_file_.guard.freeze)  // steps would be beside the plan
+      if (auto const tried = run_.try_steps(); !tried.text.empty()) stepped_[step] = tried.text;
+    add_time(run_.times, "quality" + count, part_.lap(), false);
+    judge(step);
+    if (page_) page_->add_step(run_, step, options_.steps, worst_ == std::size_t(step));
+    part_.lap();
+    // Once a step cannot be used the files are not needed; the table still says how the others fare.
+    if (!inverted_ || case_file_.guard.write_inverted) files_->add(run_.morphed(), run_.fields());
+    add_time(run_.times, "write" + count, part_.lap(), false);
+  }
+
+  void judge(int step) {
+    auto& result = results_.emplace_back(
+        step_result(options_.time_at(step), run_.mesh().coordinates(), run_.morphed(), run_.quality()));
+    for (auto const& s : shortfalls({}, run_.quality(), thresholds_of(case_file_)))
+      if (s.severity == Shortfall::Severity::failure && result.shortfall.empty()) result.shortfall = s.message;
+    result.clearances = run_.clearances(&moments_[std::size_t(step)]);
+    inverted_ = inverted_ || result.newly_inverted > 0;
+    if (step == 0 || badness(result) < badness(results_[worst_])) {
+      worst_ = std::size_t(step);
+      worst_quality_ = run_.quality();
+    }
+    if (Badness const now = badness_of(run_.quality()); step == 0 || most_ < now) {
+      most_ = now;
+      worst_for_retry_ = std::size_t(step);
+    }
+  }
+
+  void look_at_worst() {
+    written_ = !inverted_ || case_file_.guard.write_inverted;
+    (void)run_.morph(&moments_[worst_]);
+    if (!written_ || page_) {  // what is said of the worst cell needs it as it came out in the end
+      run_.measure();
+      if (!case_file_.guard.freeze) (void)run_.try_steps();
+    }
+    outcome_ = run_.plan().outcome(run_.morphed(), worst_quality_.fast, false);
+    run_.notes = run_.plan().notes();
+    run_.notes.insert(run_.notes.end(), guarded_.notes.begin(), guarded_.notes.end());
+    add_guard_notes();
+    shortfalls_ = run_.shortfalls_of_motion();
+    motion_falls_short_ = any_failure(shortfalls_);
+    auto const of_quality = run_.shortfalls_of(worst_quality_);
+    shortfalls_.insert(shortfalls_.end(), of_quality.begin(), of_quality.end());
+  }
+
+  /// What the guard did in the steps.
+  void add_guard_notes() {
+    constexpr std::size_t most_notes = 8;  // of more of them the number
+    if (relaxed_ > 0)
+      run_.notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed_,
+                                       run_.mesh().kind().lost));
+    std::size_t shown = 0;
+    for (auto const& [step, text] : stepped_)
+      if (shown++ < most_notes) run_.notes.push_back(fmt::format("step {}: {}", step + 1, text));
+    if (shown > most_notes) run_.notes.push_back(fmt::format("the same in {} more steps", shown - most_notes));
+  }
+
+  void draw_page() {
+    if (!page_) return;
+    console_.progress("drawing the page");
+    part_.lap();
+    page_->finish(run_, worst_quality_);
+    run_.times.push_back({"page", part_.lap()});
+  }
+
+  [[nodiscard]] nlohmann::json json() const {
+    nlohmann::json json = run_.json(worst_quality_, outcome_);
+    json["sequence"] = steps_json(results_, worst_, options_);
+    json.update(guarded_.json);
+    return json;
+  }
+
+  [[nodiscard]] std::string text(std::string const& shortfall) const {
+    std::string text = run_.head();
+    text += (text.empty() ? "" : "\n") + steps_table(results_, worst_);
+    std::vector<std::vector<TipClearance>> clearances;
+    for (StepResult const& step : results_) clearances.push_back(step.clearances);
+    if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
+    if (!shortfall.empty()) text += "\n" + shortfall + "\n";
+    return text + fmt::format("\nstep {}, the worst one\n\n", worst_ + 1) + run_.tables(worst_quality_, outcome_);
+  }
+
+  int end() {
+    std::string const shortfall = shortfall_text(results_);
+    std::vector<std::string> warnings;
+    if (console_.quiet()) {
+      warnings = messages_of(shortfalls_);
+      if (!shortfall.empty()) warnings.insert(warnings.begin(), shortfall);
+    }
+    OutputOptions const& output = case_file_.output_options;
+    return conclude({.output = options_.output,
+                     .report = output.report,
+                     .page = output.page,
+                     .written = written_,
+                     .falls_short = !shortfall.empty() || motion_falls_short_,
+                     .json = [&] { return json(); },
+                     .page_text = [&](nlohmann::json const& report) { return page_->text(report); },
+                     .write =
+                         [&] {
+                           if (written_) files_->commit();
+                         },
+                     .text = [&] { return text(shortfall); },
+                     .wrote = wrote_text(options_),
+                     .also_wrote = wrote_report(output.report) + wrote_report(output.page),
+                     .warnings = std::move(warnings),
+                     .refusal =
+                         [&] {
+                           return run_.refusal_of(options_.output, "steps have cells",
+                                                  "lower the amplitudes, change " + file_.traits().change_many);
+                         }},
+                    console_);
+  }
+
+  CaseFile const& case_file_;
+  SequenceOptions const& options_;
+  MeshSource const& file_;
+  Console& console_;
+  std::optional<RunPage> page_;
+  Run run_;
+  std::vector<Moment> moments_;
+  Stopwatch part_;
+  Guarded guarded_;
+  std::optional<StepFiles> files_;
+  std::vector<StepResult> results_;
+  std::map<int, std::string> stepped_;  ///< steps whose way was made in several
+  Index relaxed_ = 0;                   ///< most cells that were bad in a step
+  QualityReport worst_quality_;
+  std::size_t worst_ = 0, worst_for_retry_ = 0;
+  Badness most_;  ///< of worst_for_retry_
+  bool inverted_ = false, written_ = false, motion_falls_short_ = false;
+  PlanOutcome outcome_;
+  std::vector<Shortfall> shortfalls_;
+};
 
 }  // namespace
 
 int morph_sequence(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
   check_sequence_outputs(case_file, file);
-  auto const& options = *case_file.sequence;
-  std::optional<RunPage> page;
-  if (case_file.output_options.page) page.emplace(case_file, typed);
-  Run run(case_file, file, console);
-  if (page) run.keep_measures();
-  run.measure_baseline();
-  StepFiles files(case_file, run.mesh());
-  std::vector<StepResult> results;
-  QualityReport worst_quality;
-  std::size_t worst = 0;
-  bool inverted = false;
-  Index relaxed = 0;                   // most cells that were bad in a step
-  std::map<int, std::string> stepped;  // steps whose way was made in several
-  std::string const count = fmt::format(", {} steps", options.steps);
-  Stopwatch part;
-  console.expect({});
-  std::vector<Moment> moments;
-  for (int step = 0; step < options.steps; ++step) moments.push_back(options.moment(step));
-  if (case_file.guard.smooth) {
-    console.progress("looking for cells that lose their shape");
-    run.freeze_guard(moments);
-    run.times.push_back({"guard, all steps", part.lap()});
-  }
-  std::vector<std::string> guarded;
-  nlohmann::json of_guard = nlohmann::json::object();
-  if (case_file.guard.retry) {
-    Retried const retry = run.retry(moments);
-    if (!retry.json.is_null()) of_guard["retry"] = retry.json;
-    if (!retry.text.empty()) guarded.push_back(retry.text);
-    run.times.push_back({"retries", part.lap()});
-  }
-  if (case_file.guard.freeze) {
-    FrozenIntoPlan freeze = run.freeze_into_plan(moments);
-    of_guard["frozen_guard"] = std::move(freeze.json);
-    guarded.push_back(std::move(freeze.text));
-    run.times.push_back({"freeze", part.lap()});
-  }
-  if (page) page->begin(run);
-  for (int step = 0; step < options.steps; ++step) {
-    console.progress(fmt::format("step {} of {}", step + 1, options.steps), double(step) / options.steps);
-    part.lap();
-    Moment const moment = options.moment(step);
-    relaxed = std::max(relaxed, run.morph(&moment).before);
-    add_time(run.times, "morph" + count, part.lap(), false);
-    run.measure();
-    if (!case_file.guard.freeze)  // steps would be beside the plan
-      if (auto const tried = run.try_steps(); !tried.text.empty()) stepped[step] = tried.text;
-    add_time(run.times, "quality" + count, part.lap(), false);
-    auto& result = results.emplace_back(
-        step_result(options.time_at(step), run.mesh().coordinates(), run.morphed(), run.quality()));
-    for (auto const& s : shortfalls({}, run.quality(), thresholds_of(case_file)))
-      if (s.severity == Shortfall::Severity::failure && result.shortfall.empty()) result.shortfall = s.message;
-    result.clearances = run.clearances(&moment);
-    inverted = inverted || result.newly_inverted > 0;
-    if (step == 0 || badness(result) < badness(results[worst])) {
-      worst = std::size_t(step);
-      worst_quality = run.quality();
-    }
-    if (page) page->add_step(run, step, options.steps, worst == std::size_t(step));
-    part.lap();
-    // Once a step cannot be used the files are not needed; the table still says how the others fare.
-    if (!inverted || case_file.guard.write_inverted) files.add(run.morphed(), run.fields());
-    add_time(run.times, "write" + count, part.lap(), false);
-  }
-  bool const written = !inverted || case_file.guard.write_inverted;
-  Moment const moment = options.moment(int(worst));
-  run.morph(&moment);
-  if (!written || page) {  // what is said of the worst cell needs it as it came out in the end
-    run.measure();
-    if (!case_file.guard.freeze) (void)run.try_steps();
-  }
-  PlanOutcome const outcome = run.plan().outcome(run.morphed(), worst_quality.fast, false);
-  run.notes = run.plan().notes();
-  run.notes.insert(run.notes.end(), guarded.begin(), guarded.end());
-  for (auto& note : guard_notes(relaxed, run.mesh().kind().lost, stepped)) run.notes.push_back(std::move(note));
-
-  if (page) {
-    console.progress("drawing the page");
-    part.lap();
-    page->finish(run, worst_quality);
-    run.times.push_back({"page", part.lap()});
-  }
-
-  auto shortfalls = run.shortfalls_of_motion();
-  bool const motion_falls_short = any_failure(shortfalls);
-  auto const of_quality = run.shortfalls_of(worst_quality);
-  shortfalls.insert(shortfalls.end(), of_quality.begin(), of_quality.end());
-  std::string const shortfall = shortfall_text(results);
-  std::vector<std::string> warnings;
-  if (console.quiet()) {
-    warnings = messages_of(shortfalls);
-    if (!shortfall.empty()) warnings.insert(warnings.begin(), shortfall);
-  }
-  return conclude(
-      {.output = options.output,
-       .report = case_file.output_options.report,
-       .page = case_file.output_options.page,
-       .written = written,
-       .falls_short = !shortfall.empty() || motion_falls_short,
-       .json =
-           [&] {
-             nlohmann::json json = run.json(worst_quality, outcome);
-             json["sequence"] = steps_json(results, worst, options);
-             json.update(of_guard);
-             return json;
-           },
-       .page_text = [&](nlohmann::json const& report) { return page->text(report); },
-       .write =
-           [&] {
-             if (written) files.commit();
-           },
-       .text =
-           [&] {
-             std::string text = run.head();
-             text += (text.empty() ? "" : "\n") + steps_table(results, worst);
-             std::vector<std::vector<TipClearance>> clearances;
-             for (StepResult const& step : results) clearances.push_back(step.clearances);
-             if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
-             if (!shortfall.empty()) text += "\n" + shortfall + "\n";
-             return text + fmt::format("\nstep {}, the worst one\n\n", worst + 1) + run.tables(worst_quality, outcome);
-           },
-       .wrote = wrote_text(options),
-       .also_wrote = wrote_report(case_file.output_options.report) + wrote_report(case_file.output_options.page),
-       .warnings = std::move(warnings),
-       .refusal =
-           [&] {
-             return run.refusal_of(options.output, "steps have cells",
-                                   "lower the amplitudes, change " + file.traits().change_many);
-           }},
-      console);
+  return Sequence(case_file, file, console, typed)();
 }
 
 }  // namespace gridmorph::cli

@@ -83,7 +83,7 @@ void WheelRun::prepare() {
   time("quality");
   morphed_ = Coordinates(mesh_.n_nodes());
   placed_ = Coordinates(mesh_.n_nodes());
-  if (case_.guard.retry) {
+  if (case_.guard.retry.value_or(false)) {
     retry();
     time("retries");
   }

@@ -1,5 +1,6 @@
 // A wheel over time: every step of [sequence] with one plan for all passages and steps.
 #include <gridmorph/io/output_file.hpp>
+#include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/run_files.hpp>
 #include <gridmorph/run/step_files.hpp>

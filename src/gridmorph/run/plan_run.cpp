@@ -1,0 +1,53 @@
+// `gridmorph plan`: what a case file would do.
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/report/block_graph_text.hpp>
+#include <gridmorph/run/output_files.hpp>
+#include <gridmorph/run/run.hpp>
+#include <gridmorph/run/run_files.hpp>
+
+#include <fmt/format.h>
+
+namespace gridmorph::cli {
+
+namespace {
+
+bool is_dot(std::filesystem::path const& path) { return path.extension() == ".dot" || path.extension() == ".gv"; }
+
+}  // namespace
+
+void print_plan(CaseFile const& case_file, Console& console, PlanPrinting const& options) {
+  auto const& graph = options.graph;
+  MeshSource const file =
+      checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
+  if (graph) {
+    if (file.kind == MeshKind::unstructured)
+      throw ConfigError(case_file.input.string() + " is unstructured: there are no blocks to draw; leave out --graph");
+    check_run_files(inputs_of(case_file, file), {{"drawing", *graph}});
+  }
+  if (file.kind == MeshKind::unstructured && case_file.plan.volume.order == OrderBy::prediction)
+    throw ConfigError(case_file.input.string() +
+                      " is unstructured: there are no chains to put in order; leave out --optimise");
+  Run run(case_file, file, console);
+  PlanPrediction const prediction = run.predict();
+  for (auto const& warning : prediction.warnings) console.warn(warning);
+  for (auto const& s : run.shortfalls_of_motion()) console.warn(s.message);
+  nlohmann::json json = run.plan().json();
+  if (!prediction.json.is_null()) json["prediction"] = prediction.json;
+  json["gridmorph"] = GRIDMORPH_VERSION;
+  json["case_file"] = case_file.source.string();
+  json["input"] = case_file.input.string();
+  json["nodes"] = run.mesh().n_nodes();
+  json["notes"] = run.notes;
+  json["times"] = times_json(run.times, run.mesh().n_nodes());
+  if (graph) {
+    PendingFile drawing(*graph, is_dot(*graph) ? dot_text(*run.plan().graph()) : svg_text(*run.plan().graph()));
+    drawing.commit();
+  }
+  console.document(json);
+  if (!console.json())
+    console.result(run.plan().text(options.all) + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
+                   format_times(run.times, run.mesh().n_nodes()) +
+                   (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
+}
+
+}  // namespace gridmorph::cli
