@@ -68,8 +68,8 @@ struct VectorMoments {
   }
 };
 
-/// Of moments of rotated vectors, with those before as first and those after as second ones: (real, imaginary), real
-/// not negative; no rotation where the best one is not the only one.
+/// The quaternion (real, imaginary), real not negative, of the rotation that fits best to moments of rotated vectors,
+/// with those before as first and those after as second ones; no rotation where the best one is not the only one.
 KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real, Vec3& imaginary) {
   auto const& m = s.m;
   Vec3 const c = s.crossed();
@@ -179,7 +179,7 @@ struct FrameGradients {
   AffineMotion const* frame;
   KOKKOS_INLINE_FUNCTION Mat3 const& operator[](Index n) const { return frame[n].gradient; }
 };
-/// By rotations.
+/// R - I around the nodes that drive, by their rotations.
 struct TurnGradients {
   Field<double const> turn;
   KOKKOS_INLINE_FUNCTION Mat3 operator[](Index n) const {
@@ -340,7 +340,7 @@ struct BodyTurnField {
   }
 };
 
-/// u(node) loses what the turns add.
+/// u(node) loses what the turns of bodies add to it.
 template <class MemorySpace, class V>
 struct TakeBodyTurns {
   BodyTurnField<MemorySpace, V> field;

@@ -65,7 +65,7 @@ KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double c, d
   return flat_fraction * a * b * c + 0x1p-46 * x * (a * b + b * c + c * a);
 }
 
-/// The same in 2-D, where Jacobians are areas [length^2].
+/// The size of Jacobians that mean zero in 2-D, where they are areas [length^2].
 KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double x) {
   return flat_fraction * a * b + 0x1p-46 * x * (a + b);
 }

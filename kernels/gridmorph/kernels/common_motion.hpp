@@ -180,7 +180,7 @@ struct TakeCommonMotion {
     rest[k] = norm(left) > rounding * size ? move->back * left : Vec3{};
   }
 };
-/// Its rate, where A changes by the map of `rate`.
+/// The rate of what TakeCommonMotion leaves, where A changes by the map of `rate`.
 template <class MemorySpace>
 struct TakeCommonRate {
   CommonFrame frame;
@@ -204,7 +204,7 @@ struct AddCommonMotion {
 
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] += move->map(frame, x[n] + move->share * u[n]); }
 };
-/// Its rate, before u is that of AddCommonMotion.
+/// The rate of what AddCommonMotion makes of u; u is still what it was before.
 struct AddCommonRate {
   CommonFrame frame;
   Field<double const> x;
@@ -256,7 +256,7 @@ struct CommonDefects {
     defect[r] = Vec3{frame.y(0, at), frame.y(1, at), frame.y(2, at)} - means[target(r)];
   }
 };
-/// y of all nodes.
+/// The coordinates y of all nodes in a CommonFrame.
 struct CommonCoordinates {
   CommonFrame frame;
   Field<double const> x;

@@ -227,7 +227,7 @@ inline constexpr int max_degree = 5;
 struct Degrees {
   int of[3];
 };
-/// Of J in u, v, w, pyramids with their factor; 0 along w in 2-D.
+/// The degrees of J in u, v, w, of pyramids with their factor; 0 along w in 2-D.
 KOKKOS_INLINE_FUNCTION Degrees degrees(ElementType type) {
   switch (type) {
     case ElementType::triangle: return {{2, 2, 0}};
@@ -314,7 +314,7 @@ struct BezierBox {
   }
 };
 
-/// Of the whole element, pyramids without their factor; tables[d]: bezier_of_values(d).
+/// Bezier coefficients of J of the whole element, of pyramids without their factor.
 KOKKOS_INLINE_FUNCTION BezierBox bezier_box(CurvedElement const& c, double sign, Vec3 const& normal) {
   BezierBox b;
   b.degree = degrees(c.type);

@@ -127,7 +127,7 @@ KOKKOS_INLINE_FUNCTION void face_angles(ElementCorners const& c, int face, doubl
   }
 }
 
-/// The same for all faces of a tetrahedron: an angle for every two edges that meet, from the six edges alone.
+/// The range of angles in all faces of a tetrahedron: an angle for every two edges that meet, from the six edges alone.
 KOKKOS_INLINE_FUNCTION void tetrahedron_angles(ElementCorners const& c, EdgeLengths const& e, AngleRange& angles) {
   constexpr ElementType type = ElementType::tetrahedron;
   Vec3 edge[n_edges(type)];
@@ -345,7 +345,7 @@ KOKKOS_INLINE_FUNCTION double determinant(ElementCorners const& c, double sign, 
   return is_finite(m.volume) ? m.determinant_3x3x3 : -1;
 }
 
-/// Of a simplex, whose edges have a direction each: no sums, and one square root.
+/// The relative displacement of a simplex, whose edges have a direction each: no sums, and one square root.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION double simplex_relative_displacement(ElementCorners const& baseline,
                                                             ElementCorners const& morphed) {

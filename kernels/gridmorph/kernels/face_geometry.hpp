@@ -75,7 +75,7 @@ struct ElementCentre {
   double volume = 0;
 };
 
-/// Of an element: faces(f) is the geometry of face f < n_faces; solid: 3-D.
+/// The centre and volume of an element: faces(f) is the geometry of face f < n_faces; solid: 3-D.
 template <class Faces>
 KOKKOS_INLINE_FUNCTION ElementCentre element_centre(int n_faces, Faces const& faces, bool solid) {
   Vec3 mean;

@@ -143,7 +143,7 @@ struct FacetSurfaceView {
     walk.offer(p, at.s, at.n, FacetFoot::Place::inside);
   }
 
-  /// On to the place t of an edge (4 * facet + edge).
+  /// Goes on to the place t of an edge (4 * facet + edge).
   KOKKOS_INLINE_FUNCTION void cross(Walk& walk, int edge, double t) const {
     walk.from = walk.facet;
     walk.facet = edge / 4;

@@ -37,7 +37,7 @@ struct PartialAmplitudes {
   }
 };
 
-/// Item d: a_d of its parts.
+/// Sums the amplitude a_d of item d from its parts.
 struct SumAmplitudes {
   double const* partial;
   Index n_chunks;

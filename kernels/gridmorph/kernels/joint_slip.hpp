@@ -58,7 +58,7 @@ struct JointSlipTable {
   Kokkos::View<Mat3 const*, MemorySpace> turns;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
 
-  /// Of entry k.
+  /// The number of surfaces of entry k.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int count(Index k) const { return int(first(k + 1) - first(k)); }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION SurfaceOfImage surface_of(Index k, int m, Field<double const> const& x) const {
     Index const at = first(k) + m;
@@ -109,7 +109,7 @@ struct PutBackGiven {
     if constexpr (Rate) kept_rate[s] = rate;
   }
 };
-/// Its transpose, on gradients where they are: of what is kept, then of what is given.
+/// Transpose of PutBackGiven, on gradients where they are: of what is kept, then of what is given.
 template <class MemorySpace>
 struct PutBackGivenBack {
   JointSlipTable<MemorySpace> table;
@@ -161,7 +161,7 @@ struct HoldJointNodes {
     }
   }
 };
-/// Owners' displacements that it is about to start from, kept for its transpose.
+/// Keeps the owners' displacements that HoldJointNodes is about to start from, for its transpose.
 template <class MemorySpace>
 struct KeepJointNodes {
   JointNodes<MemorySpace> nodes;
@@ -170,7 +170,7 @@ struct KeepJointNodes {
   [[nodiscard]] Index size() const { return Index(nodes.owner.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { kept[k] = u[nodes.owner(k)]; }
 };
-/// Its transpose: all gradients go to the owner.
+/// Transpose of HoldJointNodes: all gradients go to the owner.
 template <class MemorySpace>
 struct HoldJointNodesBack {
   JointNodes<MemorySpace> nodes;

@@ -165,7 +165,7 @@ struct LineParameters {
       walk(step);
   }
 
-  /// Arc lengths to fractions.
+  /// Turns arc lengths into fractions of the whole line.
   template <class Block>
   KOKKOS_INLINE_FUNCTION void divide(Tile const& tile, double const* sum) const {
     double per_length[Block::lines] = {};

@@ -144,7 +144,7 @@ KOKKOS_INLINE_FUNCTION double polyhedron_determinant(Points const& p, double sig
   return is_finite(j.volume) ? larger(-1.0, smaller(1.0, j.share)) : -1.0;
 }
 
-/// Whether all pyramids have volume.
+/// The sign of all pyramids together: whether they have volume.
 template <class Points>
 KOKKOS_INLINE_FUNCTION JacobianSign polyhedron_sign(Points const& p, double sign) {
   polyhedron::Pyramids const j = polyhedron::pyramids(p, sign);
@@ -152,7 +152,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign polyhedron_sign(Points const& p, double sign
   return j.least > 0 ? JacobianSign::positive : JacobianSign::zero;
 }
 
-/// Of an element that moved from `baseline` to `morphed`; `unbounded` where a corner is not finite.
+/// The relative displacement of a polyhedron that moved from `baseline` to `morphed`; `unbounded` where a corner is not
+/// finite.
 template <class From, class To>
 KOKKOS_INLINE_FUNCTION double polyhedron_relative_displacement(From const& baseline, To const& morphed) {
   double worst = 0, length = 0;

@@ -72,7 +72,8 @@ KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& 
   return (squares.min > limit ? broadcast<T>(0) : broadcast<T>(1)) + (result - result);
 }
 
-/// The same for a cell's volume and its determinant over 27 points, in which the corners are.
+/// 0 for a regular cell, from the extremes of its squared edge lengths, its volume and its determinant over 27 points,
+/// among which the corners are.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& volume, T const& determinant) {
   T const cubed = squares.max * squares.max * squares.max;
@@ -118,7 +119,7 @@ KOKKOS_FORCEINLINE_FUNCTION PlaneJacobians<T> plane_jacobians(NineVectors<T> con
           ((j00 + j10) + (j01 + j11)) + ((m00 + m10) + (m01 + m11)) + centre};
 }
 
-/// JacobianRange of regular cells.
+/// The JacobianRange of regular cells.
 template <class T>
 struct CellJacobians {
   Extremes<T> eight, all;  ///< over the 8 corners, over the 27 points
@@ -180,7 +181,7 @@ struct PlaneShape {
   Extremes<T> cosines, squares;
 };
 
-/// From the edges of the plane.
+/// The shape of a plane, from its edges.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION PlaneShape<T> plane_shape(LaneVec3<T> const& j0, LaneVec3<T> const& j1,
                                                       LaneVec3<T> const& k0, LaneVec3<T> const& k1) {

@@ -228,7 +228,7 @@ struct EndWallTurn {
   struct Found {
     V alpha{}, before{}, after{};
   };
-  /// Of displacements u and rotations raw.
+  /// What end wall e is found to do by displacements u and rotations raw.
   template <class Displacements, class Rotations>
   KOKKOS_INLINE_FUNCTION Found at(Index e, Displacements const& u, Rotations const& raw) const {
     EndWall const& end = table.end_walls(e);
@@ -244,7 +244,7 @@ struct EndWallTurn {
   }
 
  private:
-  /// Of the surface where the displacement takes the end; frame of the end's slot.
+  /// The normal of the surface where the displacement takes the end, in the frame of the end's slot.
   KOKKOS_INLINE_FUNCTION V normal(EndWall const& end, V const& displacement) const {
     V const there = table.in_frame(end.to_zone, displacement);
     if constexpr (has_rate<V>) {
@@ -295,7 +295,8 @@ struct NearFieldTurn {
   }
 
  private:
-  /// Between two slip surfaces about the spanwise direction alone, otherwise the turn itself.
+  /// The turn of the section: between two slip surfaces that about the spanwise direction alone, otherwise the turn
+  /// itself.
   KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned) const {
     if (!(ends.fraction >= 0)) return turned;
     V before{}, after{};

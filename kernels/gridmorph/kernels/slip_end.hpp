@@ -103,7 +103,7 @@ struct SlipEndValues {
     return matrix < 0 ? v : matrices(matrix) * v;
   }
 };
-/// Once per plan and baseline mesh.
+/// Fills the baselines of all ends, once per plan and baseline mesh.
 template <class Exec>
 void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename Exec::memory_space> const& ends,
                         Kokkos::View<SlipSurfaceView const*, typename Exec::memory_space> const& surfaces,

@@ -96,7 +96,7 @@ struct ProfileView {
     return lo.radius + (rise + h * (slopes + h * bends));
   }
 
-  /// Its derivative with respect to the axial position.
+  /// The derivative of the profile with respect to the axial position.
   KOKKOS_INLINE_FUNCTION double derivative(double a) const {
     if (a <= knots[0].axial) return knots[0].slope;
     if (a >= knots[size - 1].axial) return knots[size - 1].slope;

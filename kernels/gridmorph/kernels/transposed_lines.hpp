@@ -28,7 +28,7 @@ namespace gridmorph::kernels {
 struct LineStep {
   Index s, a, b;
 };
-/// Along which nodes lie side by side in a row: on neighbouring lines, or on one line.
+/// The direction along which the nodes of a row lie side by side: on neighbouring lines (a), or on one line (s).
 enum class RowAlong { a, s };
 template <RowAlong along>
 KOKKOS_INLINE_FUNCTION Index row_step(LineStep const& step) {

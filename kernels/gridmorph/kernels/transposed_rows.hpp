@@ -52,7 +52,7 @@ void gather_rows(char const* label, Exec const& exec, TransposedRows<typename Ex
   launch(label, exec, 0, rows.size(),
          GatherRows<typename Exec::memory_space, Targets, Sources>{rows, targets, sources});
 }
-/// In place, one launch per layer.
+/// Gathers in place, layer after layer, one launch per layer.
 template <class Exec, class Value>
 void gather_layers(char const* label, Exec const& exec, TransposedLayers<typename Exec::memory_space> const& layers,
                    Value* value) {
@@ -61,7 +61,7 @@ void gather_layers(char const* label, Exec const& exec, TransposedLayers<typenam
            GatherRows<typename Exec::memory_space, Value*, Value*>{layers.rows, value, value});
 }
 
-/// The same where sources are three arrays.
+/// sources(item) += the sum of weight targets(row), where sources are three arrays.
 template <class MemorySpace>
 struct AddToField {
   TransposedRows<MemorySpace> rows;
@@ -80,7 +80,7 @@ struct ClearValues {
   Value* value;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { value[n] = Value{}; }
 };
-/// Those of listed nodes: values that had been written over.
+/// Clears the values of listed nodes, which had been written over.
 template <class MemorySpace>
 struct ClearListed {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
@@ -224,7 +224,7 @@ struct PassMotionsBack {
     motion[place] = sum;
   }
 };
-/// What rows have written to u begins as the gradient of their motion; listed places.
+/// At listed places, what rows have written to u becomes the first gradient of their motion.
 template <class MemorySpace>
 struct MotionsFromNodes {
   Kokkos::View<std::int32_t const*, MemorySpace> place, node;

@@ -11,8 +11,8 @@
 
 namespace gridmorph::kernels {
 
-/// Of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their slot, in its
-/// own.
+/// The gradients of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their
+/// slot, in its own.
 template <class MemorySpace>
 struct SlidingShiftsBack {
   AddSlidingShifts<MemorySpace, true> forwards;

@@ -47,7 +47,8 @@ KOKKOS_INLINE_FUNCTION double far_growth(double s) {
 KOKKOS_INLINE_FUNCTION double far_weight(Chain const& chain, double t) {
   return 1 - chain.turn_scale * (far_growth(chain.turn_reach * t) - 1);
 }
-/// Without a slope at the wall, so that the first cells turn with it whole.
+/// The weight of the wall's rotation at t in the near field, without a slope at the wall, so that the first cells turn
+/// with it whole.
 KOKKOS_INLINE_FUNCTION double near_field_weight(double t) {
   constexpr double start = 0.03;
   double const left = 1 - (1 + start) * t * t / (t + start);
@@ -75,7 +76,7 @@ struct TurnedEnd {
   typename Quaternion<V>::Scalar stretch{};  ///< s - 1; near field
 };
 
-/// Those of line ends: eight arrays one after another.
+/// How all line ends turn: eight arrays one after another.
 template <class T>
 struct TurnedEnds {
   static constexpr int components = 8;
@@ -146,7 +147,7 @@ KOKKOS_INLINE_FUNCTION V turned_between(TurnedEndsWithRates const& all, Chain co
   return sum;
 }
 
-/// The same for a node of line (a, b) of a chain that turns; the rate where there are rates.
+/// What the ends of line (a, b) of a chain that turns add to a node at x; the rate of that where there are rates.
 KOKKOS_INLINE_FUNCTION Vec3 turned_between(TurnedEndsWithRates const& all, Chain const& chain, Index a, Index b,
                                            double t, Vec3 const& x) {
   Index const lower = chain.first_end_value + a + chain.n_a * b, upper = lower + chain.section_size();
