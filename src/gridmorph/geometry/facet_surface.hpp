@@ -57,7 +57,7 @@ struct FacetSurface {
   [[nodiscard]] kernels::FacetSurfaceView view() const {
     return {{points.data(), facets.data(), boxes.data()}, normals.data(), bends.data()};
   }
-  /// On the host; O(log n) near the surface.
+  /// The point of the surface nearest to p, for host code. Cost O(log n) near the surface.
   [[nodiscard]] kernels::FacetFoot closest_point(Vec3 const& p) const { return view().closest_point(p); }
 };
 

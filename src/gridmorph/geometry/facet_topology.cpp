@@ -63,8 +63,8 @@ std::vector<int> coincident(FacetList const& list, double tolerance) {
   return stands_for;
 }
 
-/// Without repeated corners, starting at the lowest number and going towards the lower of its neighbours; fewer than
-/// three corners: empty.
+/// The corners of a facet without repeated ones, starting at the lowest number and going towards the lower of its
+/// neighbours; fewer than three corners: empty.
 std::vector<int> in_order(std::vector<int> corners) {
   for (std::size_t q = 0; q < corners.size() && corners.size() > 1;)
     if (corners[q] == corners[(q + 1) % corners.size()])

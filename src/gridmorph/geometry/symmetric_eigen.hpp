@@ -20,7 +20,7 @@ struct SymmetricEigen {
   SmallMatrix<N> vector{};
 };
 
-/// kernels::diagonalise(), in order.
+/// Eigenvalues and eigenvectors as kernels::diagonalise() finds them, in order.
 template <std::size_t N>
 SymmetricEigen<N> symmetric_eigen(SmallMatrix<N> const& matrix) {
   SymmetricEigen<N> out;

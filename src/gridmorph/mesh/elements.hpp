@@ -57,7 +57,7 @@ struct ElementViews {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(type.extent(0)); }
 };
 
-/// The same for elements.
+/// The element lists of a mesh in the memory space of `exec`.
 template <class Exec>
 ElementViews<typename Exec::memory_space> views(Exec const& exec, Elements const& elements) {
   return {detail::view_of(exec, elements.type, "gridmorph::Elements::type"),

@@ -24,7 +24,7 @@ struct MiddleNode {
   Index32 node = 0;
   std::vector<Index32> amid;  ///< corners of the edge, or of the side, ascending
 };
-/// Those amid its edges, then the one amid the side where the element has such nodes.
+/// The further nodes on a side: those amid its edges, then the one amid the side where the element has such nodes.
 std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side);
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the
