@@ -214,7 +214,7 @@ class Finder {
   }
 
  private:
-  /// Regions, wakes found from their blades.
+  /// The regions of a motion, with wakes found from their blades.
   [[nodiscard]] std::vector<InnerRegion> located(Motion const& motion) const {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);

@@ -44,7 +44,8 @@ class CarriedFeatures {
                   CarryRule const& rule, std::vector<int> const& walls, Displacement const& displacement,
                   std::string const& name);
 
-  /// Of nodes of the features, found by their baseline position. Throws MotionError for other points. Cost O(1) each.
+  /// Displacement of nodes of the features, found by their baseline position. Throws MotionError for other points. Cost
+  /// O(1) each.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
 
   [[nodiscard]] std::vector<Feature> const& features() const { return features_; }

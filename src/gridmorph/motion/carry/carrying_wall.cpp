@@ -27,7 +27,7 @@ class Reach {
     part_features();
   }
 
-  /// Of the nearest feature, or -1 where none reaches.
+  /// The number of the nearest feature, or -1 where none reaches.
   [[nodiscard]] int feature(std::size_t v) const {
     int const f = nearest_[v];
     return f >= 0 && (away_[v] == 0 || away_[v] < reach_[std::size_t(f)]) ? f : -1;

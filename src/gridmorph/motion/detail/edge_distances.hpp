@@ -21,11 +21,11 @@ struct EdgeDistances {
   std::vector<int> source;       ///< place of the nearest one in the list of sources, -1: none
 };
 
-/// Of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one place. Cost O(n
-/// log n).
+/// The distance of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one
+/// place. Cost O(n log n).
 EdgeDistances edge_distances_and_sources(PatchSurface const& surface, std::vector<VertexImage> const& images,
                                          std::vector<int> const& sources);
-/// The distances alone.
+/// The distances of edge_distances_and_sources() alone.
 inline std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
                                           std::vector<int> const& sources) {
   return edge_distances_and_sources(surface, images, sources).distance;

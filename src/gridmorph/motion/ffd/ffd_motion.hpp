@@ -53,7 +53,7 @@ class FfdMotion {
   std::shared_ptr<Ground const> ground_;
 };
 
-/// "i-min", "i-max", "j-min", ...
+/// The name of a face of a lattice: "i-min", "i-max", "j-min", ...
 std::string const& ffd_face_name(std::size_t face);
 
 }  // namespace gridmorph

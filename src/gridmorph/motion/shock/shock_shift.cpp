@@ -24,7 +24,7 @@ void ShockShift::Sheet::finish() {
 
 namespace {
 
-/// Of places within a radius; 0 beyond.
+/// How much a place counts that is within a radius; 0 beyond.
 double near_share(Vec3 const& place, Vec3 const& at, double radius) {
   double const s = distance(place, at) / radius;
   return s < 1 ? (1 - s * s) * (1 - s * s) : 0;

@@ -76,7 +76,7 @@ class EdgeMapper {
     double cost;
     int vertex, place;
   };
-  /// Of a vertex on a loop that has a partner on the target.
+  /// What is known of a vertex on a loop that has a partner on the target.
   struct LoopVertex {
     int partner = -1;  ///< number of the target's loop
     int place = -1;    ///< one on it
@@ -113,7 +113,8 @@ class EdgeMapper {
   [[nodiscard]] int free_end(int vertex) const { return neighbours_[vertex].size() == 1 ? 1 : 0; }
   void count(bool mapped) { ++(mapped ? out_.mapped : out_.unmapped); }
 
-  /// From the lines that are mapped: affine, and what that misses by inverse distance to the fourth power.
+  /// Makes the guess from the lines that are mapped: affine, and what that misses by inverse distance to the fourth
+  /// power.
   void refine_guess() {
     std::vector<Vec3> from, moved;
     for (std::size_t v = 0; v < points_.size(); ++v)

@@ -18,9 +18,9 @@ class Annulus {
   /// The end walls of the row, each between the ends of what the row has of it.
   using Walls = std::function<std::vector<WallPiece>()>;
 
-  /// From the slip surfaces of revolution in the row's zones when there are some inside and some outside of the blade;
-  /// otherwise from the blade's own range of radii. Keeps pointers to `surfaces`. `walls` is asked when the flow path
-  /// turns; without it, the whole candidates are the walls.
+  /// The annulus of a row, from the slip surfaces of revolution in its zones when there are some inside and some
+  /// outside of the blade; otherwise from the blade's own range of radii. Keeps pointers to `surfaces`. `walls` is
+  /// asked when the flow path turns; without it, the whole candidates are the walls.
   Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidates, std::vector<MeridionalPoint> const& blade,
           Walls const& walls = {});
 

@@ -294,7 +294,7 @@ std::vector<SectionGeometry::Line> lines_of(SectionFrame const& frame, BladeSurf
   return lines;
 }
 
-/// Both sides of one blade of an H mesh, the second turned onto the first.
+/// The outline of both sides of one blade of an H mesh, the second turned onto the first.
 SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<SectionGeometry::Line> one,
                                     std::vector<SectionGeometry::Line> other) {
   auto const upstream_first = [](std::vector<SectionGeometry::Line>& side) {
