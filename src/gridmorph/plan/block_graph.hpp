@@ -38,7 +38,8 @@ struct BlockGraph {
   std::vector<Chain> chains;        ///< stage by stage
 };
 
-/// Of a prepared morph. Blocks are found once more: O(blocks), and what near fields by thickness read of the mesh.
+/// The graph of the blocks of a prepared morph. Blocks are found once more: O(blocks), and what near fields by
+/// thickness read of the mesh.
 BlockGraph block_graph(PreparedMorph const& prepared);
 
 }  // namespace gridmorph

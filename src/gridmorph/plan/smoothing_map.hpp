@@ -8,7 +8,7 @@
 
 namespace gridmorph {
 
-/// After a morph of the boundary displacement u
+/// What is added to the nodes after a morph of the boundary displacement u
 ///
 ///   a_d = sum over boundary nodes b of gauge_d(b) . u(b),    u(n) += sum over d of a_d shift_d(n)
 ///

@@ -22,15 +22,16 @@ struct Trim {
   std::string outcome;      ///< what becomes of the nodes
   double mesh_size = 0;     ///< diagonal of the box of the mesh [length]
 
-  /// Undone of what was asked for.
+  /// The share of what was asked for that is undone.
   [[nodiscard]] double share() const { return displacement > 0 ? std::min(1.0, most / displacement) : 0; }
 };
 
-/// Of blocks: displacements (per Plan::boundary_nodes) that finalize puts back. Empty when all stay on the slip
-/// surfaces as build_spread() asks of them. Cost: O(nodes on slip surfaces, requests).
+/// What is trimmed in a mesh of blocks: displacements (per Plan::boundary_nodes) that finalize puts back. Empty when
+/// all stay on the slip surfaces as build_spread() asks of them. Cost: O(nodes on slip surfaces, requests).
 std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
                         BoundaryMotion const& motion, std::vector<Vec3> const& boundary);
-/// Of elements: displacements (per BoundaryConditions::known) that a morph puts back before anything else.
+/// What is trimmed in a mesh of elements: displacements (per BoundaryConditions::known) that a morph puts back before
+/// anything else.
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given);
 
 /// "the displacement by case.toml:12 takes 47 nodes off the slip surface of 'hub', most zone ... by 0.0012, 3 % of its

@@ -187,7 +187,7 @@ class Boundary {
   }
 
  private:
-  /// Of the boundary's nodes, in their order here.
+  /// Chart coordinates of the boundary's nodes, in their order here.
   [[nodiscard]] std::vector<Point> places(Chart const& chart) const {
     std::vector<Point> q(nodes_.size());
     for_all(host_, "gridmorph::fit_domain", Index(nodes_.size()),

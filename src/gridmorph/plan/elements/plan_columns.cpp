@@ -12,8 +12,8 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// By the mean of their corners: a node that several columns reach belongs to the first face, however faces are
-/// numbered.
+/// Sorts faces by the mean of their corners: a node that several columns reach belongs to the first face, however faces
+/// are numbered.
 void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::vector<Index32>& faces) {
   std::vector<Vec3> middle(std::size_t(topology.boundary.size()));
   for (Index32 const f : faces) {

@@ -10,7 +10,7 @@
 
 namespace gridmorph {
 
-/// Of some walls, each a list of edges in a plane z = constant, the closeness
+/// The closeness of some walls, each a list of edges in a plane z = constant,
 ///
 ///   C(x) = integral along the wall of ds / |y - x|^2
 ///

@@ -55,7 +55,7 @@ struct Wrap {
   [[nodiscard]] Index3 index(Index cell) const {
     return {int(cell % cells(0)), int(cell / cells(0) % cells(1)), int(cell / (Index(cells(0)) * cells(1)))};
   }
-  /// False for what is no cell.
+  /// Whether a cell is inside the wrap; false for what is no cell.
   [[nodiscard]] bool is_inside(Index3 const& c) const {
     for (int a = 0; a < 3; ++a)
       if (c[std::size_t(a)] < 0 || c[std::size_t(a)] >= cells(a)) return false;
@@ -79,7 +79,7 @@ struct Wrap {
   [[nodiscard]] int interval(int axis, double coordinate) const;
   /// The cell that holds a point of the chart; beyond the outer box one of the outermost. In 2-D z is not looked at.
   [[nodiscard]] Index3 find(Vec3 const& coordinates) const;
-  /// Of chart coordinates.
+  /// Whether chart coordinates are in the wrap.
   [[nodiscard]] bool holds(Vec3 const& coordinates) const {
     return tube ? tube->contains(coordinates) : is_inside(find(coordinates));
   }

@@ -107,7 +107,7 @@ void trim(Mesh const& mesh, Coordinates const& q, std::size_t n_axes, std::span<
   }
 }
 
-/// Joins intervals less than `gap` apart.
+/// Joins intervals that are less than `gap` apart.
 std::vector<Interval> joined(std::vector<Interval> const& intervals, double gap) {
   std::vector<Interval> out;
   for (Interval const& i : intervals)
