@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Nodes as triangles without area.
+/// A tree of nodes, as triangles without area.
 TargetTree tree_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> each;

@@ -126,7 +126,7 @@ std::string_view after_line(std::string_view text) {
   return end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
 }
 
-/// From the first line on that says something: no blank one, and none that begins as comments do.
+/// The text from the first line on that says something: no blank one, and none that begins as comments do.
 std::string_view without_comments(std::string_view text, std::string_view comment) {
   while (!text.empty() && (first_line(text).empty() || first_line(text).starts_with(comment))) text = after_line(text);
   return text;

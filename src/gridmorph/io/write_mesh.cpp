@@ -31,7 +31,7 @@ class MeshWriter {
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &version);
   }
 
-  /// values: of this zone's nodes.
+  /// Writes zone z. values: x, y, z of its nodes.
   void zone(int z, std::array<double const*, 3> const& values) {
     auto const& zone = mesh_.zones[z];
     if (mesh_.dimension == 2 && zone.extent[2] != 2)

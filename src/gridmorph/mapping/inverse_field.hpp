@@ -19,8 +19,8 @@ struct InverseReport {
   double one_step = 0;       ///< the same of X = x - u(x), the first order [length]
   Vec3 worst_of_one_step{};  ///< where that is
   Index held = 0;            ///< positions whose iterations went to and fro between elements, and were held on one
-  /// By how much u differs there from one element to the next, where no place has a residual within the tolerance
-  /// [length].
+  /// How much u differs at these positions from one element to the next, where no place has a residual within the
+  /// tolerance [length].
   double jump = 0;
 };
 

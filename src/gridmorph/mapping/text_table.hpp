@@ -15,7 +15,7 @@ namespace gridmorph::mapping {
 /// Problems of one file that are listed before the rest is left out.
 inline constexpr std::size_t most_problems_per_file = 10;
 
-/// Without blanks and carriage returns at both ends.
+/// A text without blanks and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
 /// More columns are no table of numbers by point, element or span.

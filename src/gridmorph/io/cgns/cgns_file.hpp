@@ -68,12 +68,13 @@ class File {
 
   /// The nodes that describe a mesh, without their data. Solutions, sections and the like are listed, not entered.
   [[nodiscard]] Node tree() const;
-  /// Of a file that is a copy of the one whose tree is given, byte for byte: nothing is read where that is enough.
+  /// The tree of a file that is a copy of the one whose tree is given, byte for byte: nothing is read where that is
+  /// enough.
   [[nodiscard]] Node tree_of_copy(Node const& original) const;
   /// Enters a node that tree() only lists: its children, without theirs.
   void load_children(Node& node) const;
 
-  /// "R8", "I4", "C1", "MT", ...
+  /// The data type of a node: "R8", "I4", "C1", "MT", ...
   [[nodiscard]] std::string type(Node const& node) const;
   [[nodiscard]] std::vector<Index> dimensions(Node const& node) const;  ///< first one fastest
   /// Number of values; throws IoError where a damaged file declares more than it can hold.

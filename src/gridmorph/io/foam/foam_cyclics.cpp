@@ -16,7 +16,8 @@ namespace gridmorph::foam {
 
 namespace {
 
-/// Of the mesh size: points of meshes in text have six digits and more.
+/// The distance between nodes that match, as a share of the mesh size: points of meshes in text have six digits and
+/// more.
 constexpr double tolerance = 1e-5;
 
 using Pairs = std::vector<std::array<Index32, 2>>;

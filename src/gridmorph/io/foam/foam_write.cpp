@@ -85,12 +85,12 @@ class PointFiles {
   [[nodiscard]] Coordinates all(Coordinates const& morphed) const {
     return planes_ ? both_planes(on_planes_, *planes_, morphed) : morphed;
   }
-  /// Of one part, of `all`.
+  /// The text of the points of one part, which are among `all`.
   std::string text(std::size_t part, Coordinates const& all) {
     if (joined_ && all.size() != joined_->lists.points.size()) refuse();
     return with_points(files_[part], joined_ ? points_of_part(*joined_, part, all) : all);
   }
-  /// As they are.
+  /// The text of the points of one part as they are.
   std::string text(std::size_t part) { return with_points(files_[part], files_[part].coordinates()); }
 
  private:
@@ -166,7 +166,7 @@ std::string time_name(double time) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), time).ptr};
 }
 
-/// Of the points of a part.
+/// The folder of the points of a part at a time.
 fs::path time_folder(Part const& part, fs::path const& output, double time) {
   return output / part.folder.filename() / time_name(time) / "polyMesh";
 }
