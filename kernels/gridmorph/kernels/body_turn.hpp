@@ -187,7 +187,8 @@ struct TurnGradients {
   }
 };
 
-/// Per chunk of wall nodes: sum of w (R - I)^T. Chunks are those of the plan, so that sums do not depend on threads.
+/// The sum of w (R - I)^T of each chunk of wall nodes. Chunks are those of the plan, so that sums do not depend on
+/// threads.
 template <class MemorySpace, class Gradients>
 struct SumBodyWalls {
   BodyWalls<MemorySpace> walls;
@@ -219,7 +220,7 @@ KOKKOS_INLINE_FUNCTION V mean_turn(BodyWalls<MemorySpace> const& walls, Index bo
   return best_turn<V>(s, rate, walls.axis(body));
 }
 
-/// Per body: its rotation.
+/// The rotation of each body.
 template <class MemorySpace>
 struct MeanTurns {
   BodyWalls<MemorySpace> walls;
@@ -230,7 +231,7 @@ struct MeanTurns {
   KOKKOS_INLINE_FUNCTION void operator()(Index b) const { turn.set(b, mean_turn<Vec3>(walls, b, sum)); }
 };
 
-/// Per body: the quaternion of half its rotation; with rates: the rate of that.
+/// The quaternion of half the rotation of each body; with rates the rate of that.
 template <class MemorySpace, class V>
 struct TurnBodies {
   BodyWalls<MemorySpace> walls;
@@ -247,7 +248,7 @@ struct TurnBodies {
   }
 };
 
-/// Per chunk of slots, those of other boundaries included: sum of w u.
+/// The sum of w u of each chunk of slots, those of other boundaries included.
 template <class MemorySpace>
 struct SumBodyShifts {
   BodyWalls<MemorySpace> walls;
@@ -262,7 +263,7 @@ struct SumBodyShifts {
   }
 };
 
-/// Per body: its mean displacement less that of the other boundaries; or the rate of that.
+/// The shift of each body: its mean displacement less that of the other boundaries; or the rate of that.
 template <class MemorySpace>
 struct ShiftBodies {
   BodyWalls<MemorySpace> walls;
@@ -369,7 +370,7 @@ struct TakeTurnsFromFrames {
   }
 };
 
-/// All nodes gain what the turns add.
+/// Adds to the displacement of all nodes what the turns and shifts of bodies give them.
 template <class MemorySpace, class V>
 struct AddBodyTurns {
   BodyTurnField<MemorySpace, V> field;

@@ -11,7 +11,7 @@
 
 namespace gridmorph::kernels {
 
-/// What one chunk of cells gives.
+/// The verdict on one chunk of cells.
 struct ChunkValidity {
   double smallest_determinant = 1;
   Index inverted = 0;

@@ -85,7 +85,7 @@ struct SlidingShift {
   Vec3 position;  ///< of the node in the baseline
 };
 
-/// One of the nodes at such a point.
+/// One of the nodes at a point that slides.
 struct SlidingNode {
   Index node;
   std::int32_t slide;    ///< which point

@@ -41,7 +41,7 @@ struct AffineMotion {
   }
 };
 
-/// What a group at `centre` says at x.
+/// The value at x of the motion of a group at `centre`.
 KOKKOS_INLINE_FUNCTION Vec3 value_at(AffineMotion const& motion, Vec3 const& centre, Vec3 const& x) {
   return motion.u + motion.gradient * (x - centre);
 }

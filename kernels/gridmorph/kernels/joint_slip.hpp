@@ -45,7 +45,7 @@ struct SurfaceOfImage {
     return out;
   }
 };
-/// What constrained_gradient() asks where there is one surface.
+/// The gradient of u where there is one surface, as constrained_gradient() asks for it.
 KOKKOS_INLINE_FUNCTION Vec3 slip_gradient(SurfaceOfImage const& s, Vec3 const&, double own, Vec3 const& u,
                                           Vec3 const& g) {
   return s.back(slip_gradient(s.surface, s.place, own, s.there(u), s.there(g)));

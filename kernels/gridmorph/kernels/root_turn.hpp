@@ -200,7 +200,7 @@ struct RawRootTurn {
   }
 };
 
-/// Per end wall: alpha, and its normal before and after where it is a slip surface.
+/// What is kept of each end wall: alpha, and its normal before and after where it is a slip surface.
 template <class Vectors>
 struct EndWallVectors {
   Vectors all;  ///< 3 per end wall

@@ -108,7 +108,7 @@ struct RowCorrection {
     for (int w = 0; w < n; ++w, at += Index(chain.n_s) * step) add_node(at, w, weight, guess, v);
   }
 
-  /// One line for the whole row.
+  /// Adds the correction of a side where the whole row has one line of it.
   KOKKOS_INLINE_FUNCTION void add_line(Index at, double const* weight, Range const& range, VectorRow<width>& v) const {
     int const last = chain.n_s - 1;
     int const lower = table.interval(at, last, range.least, s);

@@ -88,7 +88,7 @@ struct SlipEndValues {
   }
 
  private:
-  /// What constrain_to_all() asks of one end.
+  /// The surfaces of one end, as constrain_to_all() asks for them.
   struct Surfaces {
     Kokkos::View<SlipSurfaceView const*, MemorySpace> const& all;
     SlipEnd const& end;

@@ -89,7 +89,7 @@ struct ClearListed {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { value[node(k)] = {}; }
 };
 
-/// What a group at `centre` says at x: g its gradient, added with a weight.
+/// Adds to the gradient of a group's motion that of its value_at() x, g, with a weight.
 KOKKOS_INLINE_FUNCTION void add_value_gradient(Vec3& to, Vec3 const& g, double weight, Vec3 const&, Vec3 const&) {
   to += weight * g;
 }
@@ -131,8 +131,8 @@ struct LatticeReaders {
   Kokkos::View<std::int32_t const*, MemorySpace> node;          ///< those of chunk c from first(c) on
   Kokkos::View<Index const*, MemorySpace> first;                ///< (chunks + 1)
   Kokkos::View<std::int32_t const*, MemorySpace> lattice_node;  ///< of cells that hold any of them
-  Kokkos::View<Index const*, MemorySpace> first_part;           ///< of those, and one past the last
-  Kokkos::View<std::int32_t const*, MemorySpace> part;          ///< LatticeParts::parts, cell by cell
+  Kokkos::View<Index const*, MemorySpace> first_part;  ///< first of `part` for each lattice node, and one past the last
+  Kokkos::View<std::int32_t const*, MemorySpace> part;  ///< LatticeParts::parts, cell by cell
   Index n_chunks = 0;
 };
 

@@ -18,7 +18,7 @@ struct NearFieldLine {
   std::int32_t matrix;  ///< frame of the root's slot -> chain frame, -1: the same
   Vec3 normal;          ///< of the wall, unit
   Vec3 edge;            ///< from the wall to the first node that coordinates resolve
-  double f0;            ///< there
+  double f0;            ///< share f of the wall's rotation at that node
 };
 
 /// What is kept of an end: its value, or its rate. The pivot does not move.
@@ -99,7 +99,7 @@ struct TurnNearField {
  private:
   using Q = Quaternion<V>;
 
-  /// That of q and -q, which are one rotation, which is nearer to `to`.
+  /// Either q or -q, which are one rotation: the one that is nearer to `to`.
   KOKKOS_INLINE_FUNCTION static Q nearer(Q const& to, Q const& q) {
     auto const cosine = dot(to.imaginary, q.imaginary) + (Scalar{1} - to.less) * (Scalar{1} - q.less);
     return cosine < 0 ? Q{-q.imaginary, Scalar{2} - q.less} : q;

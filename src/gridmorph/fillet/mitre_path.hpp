@@ -23,7 +23,7 @@ struct Mitre {
   std::array<int, 2> layers{0, 0};  ///< that it passes off the blade and the end wall; of lines to be cut
 };
 
-/// What it has to reach.
+/// What a mitre has to reach.
 struct MitreReach {
   std::span<double const> radius;  ///< per place of the line
   std::array<int, 2> layers{

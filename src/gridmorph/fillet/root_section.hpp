@@ -67,7 +67,7 @@ struct RootSection {
 struct CornerMove {
   Vec3 shift;
   int wall = 0;          ///< the one it belongs to
-  bool on_arc = false;   ///< its foot on the new wall
+  bool on_arc = false;   ///< whether its foot on the new wall is on the arc
   double arc_share = 0;  ///< of the half arc, where its foot is
   double start = 1;      ///< how much nearer to the corner its line begins than before
   double bend = 0;       ///< 0 on the wall, 1 in the mitre

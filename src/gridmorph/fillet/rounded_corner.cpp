@@ -24,7 +24,7 @@ TargetTree tree_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   return {std::move(points), std::move(each)};
 }
 
-/// What becomes of a node.
+/// The move of a node.
 struct Move {
   Vec3 shift;        ///< by its section
   Vec3 mended;       ///< from there onto the new wall; zero off the walls

@@ -319,7 +319,7 @@ class Slopes {
     return most;
   }
 
-  /// By how much the divided difference of point i, a stencil and point j is more than what noise may make of it.
+  /// How much the divided difference of point i, a stencil and point j is more than what noise may make of it.
   double beyond_noise(int i, Stencil const& stencil, int j) const {
     double value = 0, noise = 0;
     auto const term = [&](int k) {

@@ -14,8 +14,8 @@ namespace gridmorph {
 /// One of the two that disagree on a node.
 struct Disagreeing {
   std::string name;         ///< "'hub'", as users know it: its family where it has one
-  std::string where;        ///< of its rule
-  Vec3 displacement;        ///< that it gives the node
+  std::string where;        ///< the place of its rule, as messages name it
+  Vec3 displacement;        ///< the displacement that it gives the node
   bool by_default = false;  ///< whether no rule names it
   std::string advice;       ///< what its rule could be instead
 };

@@ -12,9 +12,9 @@ namespace gridmorph {
 struct BlockGraph {
   struct Block {
     std::string name;     ///< zone and nodes of its first piece, 1-based
-    int other_zones = 0;  ///< that it has pieces in besides
+    int other_zones = 0;  ///< number of zones that it has pieces in besides
     Index cells = 0;
-    int chain = -1;  ///< that moves it; -1: a rule does, as in regions
+    int chain = -1;  ///< number of the chain that moves it; -1: a rule does, as in regions
     std::vector<std::string>
         patches;  ///< on its outer faces: families, or names where there is none; in alphabetical order
   };

@@ -393,7 +393,7 @@ class Scheduler {
     through_gap,  ///< both known
     one           ///< one known, the other on the boundary
   };
-  /// Every chain through active blocks with such ends, in the order of these: lines across gaps come before all that
+  /// All chains through active blocks with such ends, in the order of these: lines across gaps come before all that
   /// would cross them.
   std::vector<RankedChain> collect(Ends ends) {
     std::vector<RankedChain> chains;

@@ -13,11 +13,11 @@ namespace gridmorph {
 /// What one rule, which does not go along with walls alone, asks of the nodes that lie on one slip surface too, as far
 /// as it leads off it.
 struct Trim {
-  std::string patch;        ///< that slips, as messages name it
+  std::string patch;        ///< the patch that slips, as messages name it
   std::string rule;         ///< where the displacement comes from
-  Index nodes = 0;          ///< taken off it
-  double most = 0;          ///< by so much [length]
-  std::string where;        ///< there
+  Index nodes = 0;          ///< number of nodes that are taken off it
+  double most = 0;          ///< the most that one of them is taken off by [length]
+  std::string where;        ///< the node that is taken off most, as messages name it
   double displacement = 0;  ///< largest that the rule gives anywhere [length]
   std::string outcome;      ///< what becomes of the nodes
   double mesh_size = 0;     ///< diagonal of the box of the mesh [length]

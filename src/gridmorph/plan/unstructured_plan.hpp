@@ -88,8 +88,8 @@ struct UnstructuredPlan {
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
-  /// Per driving node the first edges of the columns on it, unit, on the side to which the wall's normals look: those
-  /// of node r from first_line[r] on.
+  /// The first edges of the columns on each driving node, unit, on the side to which the wall's normals look: those of
+  /// node r from first_line[r] on.
   std::vector<Index> first_line;
   std::vector<Vec3> lines;
   ColumnPlan columns;
@@ -125,7 +125,7 @@ struct UnstructuredPlan {
     std::vector<Index32> given_slot;  ///< in `known`
     InverseDistanceField residual;    ///< of the boundary nodes among them
     LayerRows detail;                 ///< what the lattice misses, out along the nodes that begin
-    std::vector<Index32> node;        ///< those
+    std::vector<Index32> node;        ///< the nodes that begin
     std::vector<float> fade, detail_fade;
   } start;
   std::vector<SlipSurface> surfaces;  ///< BoundaryConditions::surfaces()

@@ -18,7 +18,7 @@ namespace gridmorph::cgns {
 /// Bytes of one value of a type ("R8": 8); 0 for types that hold no numbers or text.
 int bytes_per_element(std::string const& type);
 
-/// How a node lies in an HDF5 file.
+/// The place and the data of a node in an HDF5 file.
 struct Stored {
   static constexpr std::uint64_t small =
       1024;  ///< arrays of up to so many bytes are read with the tree, but for coordinates

@@ -18,7 +18,7 @@ struct ElementKind {
   int dimension = 0;  ///< 0 (NODE) to 3
   ElementType type = ElementType::triangle;
   int nodes = 0;    ///< in the list
-  int corners = 0;  ///< of them, first in the list
+  int corners = 0;  ///< how many of its nodes are corners; they are the first in the list
 };
 std::optional<ElementKind> element_kind(std::int64_t cgns_type);
 

@@ -172,7 +172,7 @@ Vec3 mean_of(std::vector<Vec3> const& places) {
   return (1 / double(places.size())) * sum;
 }
 
-/// What may take one middle to the other.
+/// The transforms that may take one middle to the other.
 std::vector<Periodic> ways_between(BoundaryEntry const& side, Vec3 const& from, Vec3 const& to) {
   std::vector<Periodic> out{periodic_translation(to - from)};
   auto const axis = vector_of(side["rotationAxis"]), centre = vector_of(side["rotationCentre"]);

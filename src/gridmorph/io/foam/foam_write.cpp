@@ -142,7 +142,7 @@ struct Making {
   }
 };
 
-/// All files of a mesh but its points, which are that text.
+/// Adds all files of a mesh, with `text` for its points.
 void add_mesh_folder(std::string const& input, Folders const& from, fs::path const& folder,
                      std::string const& points_name, std::string const& text, Making& to) {
   std::error_code ignored;
@@ -171,7 +171,7 @@ fs::path time_folder(Part const& part, fs::path const& output, double time) {
   return output / part.folder.filename() / time_name(time) / "polyMesh";
 }
 
-/// What lies in a folder, the folder with it.
+/// Adds what lies in a folder, and the folder itself.
 void add_files_in(fs::path const& folder, std::vector<fs::path>& out) {
   out.push_back(folder);
   std::error_code failure;

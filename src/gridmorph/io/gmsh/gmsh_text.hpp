@@ -13,7 +13,7 @@
 
 namespace gridmorph::gmsh {
 
-/// What $MeshFormat says.
+/// The format of a file, as $MeshFormat says it.
 struct Format {
   int version = 0;  ///< 22, 40, 41
   bool binary = false;

@@ -13,7 +13,8 @@ struct VertexImage {
   Mat3 rotation;
 };
 
-/// Both ways of every pair of vertices of the surface that a periodic connection of the mesh joins, each once.
+/// The vertices and their images, both ways of every pair of the surface that a periodic connection of the mesh joins,
+/// each once.
 std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface);
 
 struct EdgeDistances {

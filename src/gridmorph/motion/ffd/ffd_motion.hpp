@@ -39,12 +39,12 @@ class FfdMotion {
   [[nodiscard]] std::size_t size() const { return rule_.displacement.size(); }
 
  private:
-  /// What does not depend on the displacements.
+  /// What does not depend on the displacements: the lattice, and where nodes are in it.
   struct Ground {
     FfdLattice lattice;
     std::array<bool, 6> cut{};
     PointNumbers numbers{0};                  ///< nodes of lattices that are no boxes
-    std::vector<std::optional<Vec3>> places;  ///< of these
+    std::vector<std::optional<Vec3>> places;  ///< in the lattice, of these nodes
   };
   [[nodiscard]] std::optional<Vec3> place(Vec3 const& point) const;
   void check_held(std::string const& name) const;

@@ -49,7 +49,7 @@ bool ends_periodic(Mesh const& mesh, Topology const& topology, Chain const& chai
   return interface >= 0 && mesh.interfaces[interface].periodic;
 }
 
-/// Every patch that ranks as a wall and that an explicit rule other than `fixed` moves.
+/// The walls that move: every patch that ranks as a wall and that an explicit rule other than `fixed` moves.
 std::vector<int> moving_walls(BoundaryMotion const& surface, std::vector<PatchKind> const& kinds) {
   ResolvedMotion const& motion = surface.motion();
   std::vector<int> walls;

@@ -74,7 +74,7 @@ class ElementLocator {
   /// `elements`: the candidates, each once, in any order. On the host the mesh must outlive the locator. Throws
   /// MeshError for numbers of elements that the mesh does not have. Fences.
   ElementLocator(Exec const& exec, Mesh const& mesh, std::span<Index32 const> elements);
-  /// All elements of the mesh.
+  /// A locator in all elements of the mesh.
   ElementLocator(Exec const& exec, Mesh const& mesh);
 
   /// out(n): where points(n) is. `out` is at least as long as `points`.

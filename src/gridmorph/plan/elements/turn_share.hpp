@@ -11,7 +11,7 @@ struct TurnDistances {
   double body = 0;         ///< from the body that turns
   double others = 0;       ///< from all boundaries that do not turn with it; infinite where there are none
   double body_layer = 0;   ///< what turns with the body whole: its columns
-  double other_layer = 0;  ///< the same of the others
+  double other_layer = 0;  ///< what stays with the others whole: their columns
   double size = 0;         ///< largest distance of the body's walls from its centre
 };
 

@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-/// What a node takes for its nearest source.
+/// The source that a node takes for its nearest one, and its distance.
 struct Found {
   double squared = std::numeric_limits<double>::infinity();  ///< distance
   Index32 source = -1;                                       ///< place in the list of sources; their number: none

@@ -41,8 +41,8 @@ struct Wrap {
   double layer = 0;                           ///< smallest
   ChartedDomain domain;                       ///< planes and boxes are in the coordinates of its chart
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
-  /// Per side, low and high: whether its outermost cells are cells as any other, since the wrap reaches the end of the
-  /// mesh there.
+  /// Whether the outermost cells of each side, low and high, are cells as any other, since the wrap reaches the end of
+  /// the mesh there.
   std::array<std::array<bool, 2>, 3> reaches{};
   std::vector<std::uint8_t> inside;  ///< per cell, i fastest; else never in the outermost cells (of x and y in 2-D)
   std::optional<Tube> tube;          ///< the wrap, instead of cells: then the lattice is one cell, the outer box
