@@ -10,8 +10,8 @@
 // top is the apex: halfway up a lateral face has the points of a TRI_6, J has a factor (1 - w)^2, which is left out as
 // in element_quality.hpp. So J, by the element's own coordinates, is a polynomial of some degree in each of u, v, w:
 //
-//   triangle (2, 2)   quadrilateral (3, 3)   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron
-//   (5, 5, 5)
+//   triangle (2, 2)   quadrilateral (3, 3)
+//   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron (5, 5, 5)
 //
 // Its Bezier coefficients, found from as many values, bound it, and those of its parts ever more closely: A. Johnen,
 // J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", J. Comput. Phys. 233 (2013) 359.

@@ -10,14 +10,14 @@
 //
 //   V = sum of V_f,   x_c = sum of V_f (3 f + c_0) / 4 / V
 //
-// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2, x_c = sum of V_f (2 f + c_0) / 3 /
-// V.
+// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2,
+//
+//   x_c = sum of V_f (2 f + c_0) / 3 / V
 //
 //   non-orthogonality  of an inner face between elements at x and y: the angle between S and d = y - x
-//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f; h =
-//   the largest of 0.2 |d|
-//                      and |s . (p_k - f)| / |s|. On the boundary d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of
-//                      0.2 |d|
+//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f;
+//                      h = the largest of 0.2 |d| and |s . (p_k - f)| / |s|. On the boundary
+//                      d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of 0.2 |d|
 //
 // These are the definitions by which OpenFOAM builds and checks meshes (its user guide, checkMesh; H. Jasak, "Error
 // analysis and estimation for the finite volume method", thesis, Imperial College 1996, section 3.2). Cost: 45 flops

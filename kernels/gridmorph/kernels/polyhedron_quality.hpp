@@ -6,15 +6,13 @@
 //   volume         sum of the pyramids' volumes
 //   inverted       a pyramid has negative volume: S . (f - x_c) < 0. (OpenFOAM's checkMesh: "face pyramids")
 //   determinant    both: the smallest S . (f - x_c) / (A |f - x_c|) over the faces, A the sum of the areas of a face's
-//   triangles: 1 where faces
-//                  are flat and across the lines from the centre, whatever the lengths, as determinants of hexahedra
-//                  are
+//                  triangles: 1 where faces are flat and across the lines from the centre, whatever the lengths, as
+//                  determinants of hexahedra are
 //   aspect ratio   longest / shortest edge
 //   angles         between the edges in each corner of each face, above 180 degrees where a face has a dent
 //   skewness       (a - amin) / a, a = 180 - 360 / n degrees in faces with n corners; of triangles and quadrilaterals
-//   the larger of that and
-//                  (amax - a) / (180 - a), of others of that and (amax - 180) / 180: nodes of finer neighbours amid an
-//                  edge are no fault of a face. Not above 1
+//                  the larger of that and (amax - a) / (180 - a), of others of that and (amax - 180) / 180: nodes of
+//                  finer neighbours amid an edge are no fault of a face. Not above 1
 //   relative       largest |u_p - u_q| over the edges pq / their mean baseline length
 //   displacement
 //

@@ -5,8 +5,7 @@
 //   normals       N = x_eta x x_zeta on a plane of constant xi is bilinear in eta and zeta: cross products at the 4
 //                 corners only, the other 5 of the 9 points by sums. J = x_xi . N.
 //   points        bilinear vectors are kept as sums over corners: 1 x the value at corners, 2 x at edge mids, 4 x at
-//   the
-//                 centre. Powers of two scale without rounding, so extremes are scaled once and not point by point.
+//                 the centre. Powers of two scale without rounding, so extremes are scaled once and not point by point.
 //   volume        in these sums the weights 1, 4, 1 of Simpson's rule become 1 everywhere: the sum of all 27 / 216.
 //   angles        dot products of unit edge vectors; arc cosines only of the largest and the smallest per cell.
 //

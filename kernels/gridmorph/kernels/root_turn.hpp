@@ -5,8 +5,7 @@
 //             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of
 //             one side
 //   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn
-//   some nodes of a body
-//             that is deformed besides turn by 179 degrees and some by 181
+//             some nodes of a body that is deformed besides turn by 179 degrees and some by 181
 //             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of
 //             its height above each of the faces, as far as it would keep it without a turn; as far as free where the
 //             wall turns beyond 150 degrees
@@ -15,8 +14,7 @@
 //           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there
 //           before and after; onto a wall that a rule moves its own rotation after raw's inverse
 //   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N
-//   mixed by span
-//           fraction: the outer edge turns about the spanwise direction alone
+//           mixed by span fraction: the outer edge turns about the spanwise direction alone
 //
 // From raw on all keeps the way round that raw goes (turn_on()).
 //

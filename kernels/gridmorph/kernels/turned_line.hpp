@@ -8,14 +8,12 @@
 //   square      f0 = (1 - t)^2, f1 = t^2
 //   c1          f0 = 1 - f1,    f1 = 3 t^2 - 2 t^3
 //   far         f0 = 1 - scale (P(reach t) - 1),  P(s) = (1 + s^2 / (1 + s))^(1/8),  scale = 1 / (P(reach) - 1): about
-//   like the
-//               logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with no slope
-//               at its start. By square roots, which every machine rounds alike
+//               like the logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with
+//               no slope at its start. By square roots, which every machine rounds alike
 //   common      one rotation about one pivot, from one end's to the other's, by c1
 //   near_field  one rotation about the wall node, from the wall's to that of the outer edge, and the stretch s of the
-//   wall's
-//               lines (turned_ends.hpp):  u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t +
-//               0.03))^3
+//               wall's lines (turned_ends.hpp):
+//               u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t + 0.03))^3
 //
 // Shares of rotations (rotation.hpp) are taken by unit quaternions, here from that of no rotation or of the other end,
 //

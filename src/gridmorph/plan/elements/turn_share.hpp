@@ -37,8 +37,9 @@ void share_between(std::span<double> turn_shares);
 /// The turn share in narrow surroundings of plane meshes: where the way W is less than 6 S, what a place sees on all
 /// sides decides, not what is nearest (surroundings.hpp):
 ///
-///   f = k h + (1 - k) f_log,   h = 0.62 q + 0.38 (3 q^2 - 2 q^3),   q = C_b / (C_b + sum of the C of all that does not
-///   turn with the body) k = 1 - 3 t^2 + 2 t^3,   t = (W / S - 3) / 3, between 0 and 1
+///   f = k h + (1 - k) f_log,   h = 0.62 q + 0.38 (3 q^2 - 2 q^3),
+///   q = C_b / (C_b + sum of the C of all that does not turn with the body),
+///   k = 1 - 3 t^2 + 2 t^3,   t = (W / S - 3) / 3, between 0 and 1
 ///
 /// f_log what the functions above make of it. With C = c / e, c from the lattice and e the exact distance beyond the
 /// columns, so that f is 1 and 0 where it has to be. 0.38, 3 and 6 by measurement on squares that turn beside a wall,
@@ -53,8 +54,9 @@ double compactness(double perimeter, double size);
 
 /// How much of each body's shift a place makes:
 ///
-///   s_b = 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3),   t = g_b / (g_b + D),   1 / D = 1 / d + sum over the other bodies k of 1 /
-///   g_k g_b = d_b - l log(1 + d_b / l),   l = S_b min(1, W / (8 S_b))^2
+///   s_b = 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3),   t = g_b / (g_b + D),
+///   1 / D = 1 / d + sum over the other bodies k of 1 / g_k,
+///   g_b = d_b - l log(1 + d_b / l),   l = S_b min(1, W / (8 S_b))^2
 ///
 /// d_b the distances from the ends of the columns on the bodies, S_b the sizes of these, d the distance from the
 /// others, W the distance from body b plus that from what is nearest else. A shift strains what is on its way, so an
