@@ -318,6 +318,7 @@ KOKKOS_INLINE_FUNCTION Vec3 clamp_local(ElementType type, Vec3 const& local) {
       if (over > 1) {
         l.x = clamp(l.x - 0.5 * (over - 1), 1);
         l.y = clamp(l.y - 0.5 * (over - 1), 1);
+        // Rounding may leave the sum above one.
         l.y = smaller(l.y, 1 - l.x);
       }
       break;

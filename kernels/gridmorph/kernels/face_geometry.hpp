@@ -49,6 +49,7 @@ KOKKOS_INLINE_FUNCTION FaceGeometry face_geometry(int n, CornerAt const& at, Vec
   Vec3 mean;
   for (int k = 0; k < n; ++k) mean += at(k);
   mean = (1.0 / n) * mean;
+  // A triangle is one triangle, not three around its mean.
   if (n == 3) {
     face.area = 0.5 * cross(at(1) - at(0), at(2) - at(0));
     face.centre = mean;

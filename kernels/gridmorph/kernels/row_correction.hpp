@@ -54,6 +54,7 @@ struct RowCorrection {
       add_side(2, weight, range, v);
     }
     if (known & 8u) add_side(3, B, range, v);
+    // Sides have what is beyond their edges, so that edges come in once, by the products of both shares.
     for (int e = 0; e < 4; ++e) {
       if (!((known >> (4 + e)) & 1u)) continue;
       bool const upper_a = (e & 1) != 0, upper_b = (e & 2) != 0;

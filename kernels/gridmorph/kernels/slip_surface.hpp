@@ -209,6 +209,7 @@ struct SlipSurfaceView {
     return constrain(baseline, own_offset(baseline), u);
   }
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
+    // What does not move stays to the bit, also where the baseline is off the surface.
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
     if (kind == SlipKind::facets) {
@@ -229,6 +230,7 @@ struct SlipSurfaceView {
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction);
     double const r = norm(moved);
+    // On the axis no radial direction leads back: only a wall across the axis has something to say there.
     if (!(r > 0)) {
       if (!lies_across()) return u;
       MeridionalFoot const f = foot(a + du, 0);

@@ -245,6 +245,7 @@ struct LineGradients {
       }
     }
     Index const upper = lower + chain.section_size();
+    // All nodes of the rows are on one line, whose ends get the sum.
     if constexpr (along == RowAlong::s) {
       Vec3 of_first, of_last;
       for (int w = 0; w < width; ++w) {

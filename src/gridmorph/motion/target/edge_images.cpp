@@ -164,6 +164,7 @@ class EdgeMapper {
       int const loop = loop_[std::size_t(v)].partner;
       for (int const q : places) {
         if (loop >= 0 && place_loop_[std::size_t(q)] != loop) continue;
+        // Where as many edges meet in both, corners may be far apart; sharp turns of a line are the same only near by.
         bool const alike = network_.neighbours()[q].size() == degree;
         double const limit = alike && degree != 2 ? 0.5 * size_ : reach_[v];
         double const d = distance(g, network_.point(q));

@@ -151,6 +151,8 @@ class Spreading {
             }
             if (own.source != none_.source && !is_better(offer, own)) continue;
             std::atomic_ref<Index32> const listed(listed_[std::size_t(m)]);
+            // A node beside several changes is listed once. Whichever comes first does it: best() looks at all
+            // neighbours.
             if (listed.load(std::memory_order_relaxed) == sweep_ ||
                 listed.exchange(sweep_, std::memory_order_relaxed) == sweep_)
               continue;
