@@ -174,12 +174,12 @@ struct BodyWalls {
   Index n_wall_chunks = 0;                              ///< chunks of bodies
 };
 
-/// R - I around the nodes that drive, by their motion; or its rate.
+/// The gradients R - I around the nodes that drive, by their motion; or the rates of these.
 struct FrameGradients {
   AffineMotion const* frame;
   KOKKOS_INLINE_FUNCTION Mat3 const& operator[](Index n) const { return frame[n].gradient; }
 };
-/// R - I around the nodes that drive, by their rotations.
+/// The gradients R - I around the nodes that drive, by their rotations.
 struct TurnGradients {
   Field<double const> turn;
   KOKKOS_INLINE_FUNCTION Mat3 operator[](Index n) const {
@@ -299,7 +299,7 @@ struct BodyTurnField {
   Vec3 const *shift, *shift_rate;                        ///< (n_bodies)
   Field<double const> x;
 
-  /// R y - y of the share f of body b's rotation.
+  /// What R y - y is for the share f of body b's rotation.
   KOKKOS_INLINE_FUNCTION V turned(Index b, double f, Vec3 const& y) const {
     auto const h = Quaternion<V>::share(of_body(b), f);
     // The square of (1 - less) + imaginary.

@@ -82,7 +82,7 @@ struct CommonMove {
   double share;        ///< 1, or 0: both are I
 };
 
-/// F and its inverse.
+/// The move by A, with F and its inverse; both are I where `pulls` is not set or F nearly has no inverse.
 KOKKOS_INLINE_FUNCTION CommonMove common_move(CommonFrame const& frame, CommonMap const& map, bool pulls) {
   CommonMove out{map, {}, {}, 0};
   Mat3 f, inverse;
@@ -110,7 +110,7 @@ KOKKOS_INLINE_FUNCTION CommonMove common_move(CommonFrame const& frame, CommonMa
   return {map, f, inverse, 1};
 }
 
-/// Item: the moments of vectors at one chunk of a list of places, displaced ones where there are any.
+/// An item: the moments of vectors at one chunk of a list of places, displaced ones where there are any.
 template <class MemorySpace>
 struct CommonMoments {
   CommonFrame frame;
@@ -195,7 +195,7 @@ struct TakeCommonRate {
   }
 };
 
-/// v becomes v + A(x + v) of all nodes.
+/// Adds the motion in common to the displacement v of all nodes, which becomes v + A(x + v).
 struct AddCommonMotion {
   CommonFrame frame;
   Field<double const> x;
@@ -265,7 +265,7 @@ struct CommonCoordinates {
     y[n] = {frame.y(0, x[n]), frame.y(1, x[n]), frame.y(2, x[n])};
   }
 };
-/// Item: what a chunk of targets, which get what their rows miss of A, hands back to A.
+/// An item: what a chunk of targets, which get what their rows miss of A, hands back to A.
 template <class MemorySpace>
 struct CommonDefectsBack {
   Kokkos::View<std::int32_t const*, MemorySpace> target;

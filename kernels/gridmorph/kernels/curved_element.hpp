@@ -202,7 +202,7 @@ KOKKOS_INLINE_FUNCTION double jacobian_of_prism(CurvedElement const& c, Vec3 con
   return dot(cross(r, s), t);
 }
 
-/// J at a point of the cube; of pyramids with the factor (1 - w)^2.
+/// The value of J at a point of the cube; of pyramids with the factor (1 - w)^2.
 KOKKOS_INLINE_FUNCTION double jacobian(CurvedElement const& c, Vec3 const& p, Vec3 const& normal) {
   switch (c.type) {
     case ElementType::triangle: return jacobian_of_triangle(c, p, normal);
@@ -212,7 +212,7 @@ KOKKOS_INLINE_FUNCTION double jacobian(CurvedElement const& c, Vec3 const& p, Ve
   }
 }
 
-/// J dV / (du dv dw) over J.
+/// The ratio of J dV / (du dv dw) to J.
 KOKKOS_INLINE_FUNCTION double collapse(ElementType type, Vec3 const& p) {
   switch (type) {
     case ElementType::triangle:

@@ -19,7 +19,7 @@ namespace gridmorph::kernels {
 
 constexpr Index amplitude_chunk = 256;  ///< boundary nodes
 
-/// Item (d, chunk): its part of a_d.
+/// The part of a_d that chunk c has, for each item (d, c).
 template <class MemorySpace>
 struct PartialAmplitudes {
   Kokkos::View<Vec3 const*, MemorySpace> gauge;  ///< (n_modes, n_boundary)
@@ -92,7 +92,8 @@ struct SlidingNode {
   std::int32_t to_node;  ///< frame of the slot -> frame of this node, -1: the same
 };
 
-/// Rate: `out` has rates, u changes by `rate` and the shift by that of `rate_shift`.
+/// Adds the shifts of nodes that slide. Rate: `out` has rates, u changes by `rate` and the shift by that of
+/// `rate_shift`.
 template <class MemorySpace, bool Rate>
 struct AddSlidingShifts {
   Kokkos::View<SlidingNode const*, MemorySpace> nodes;

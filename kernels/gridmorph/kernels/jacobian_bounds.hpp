@@ -85,8 +85,8 @@ struct BezierCube {
   }
 };
 
-/// arithmetic: what rounding may do to a coefficient; tolerance >= arithmetic: what is zero as far as coordinates can
-/// tell.
+/// The sign of J by its Bezier coefficients. arithmetic: what rounding may do to a coefficient; tolerance >=
+/// arithmetic: what is zero as far as coordinates can tell.
 KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arithmetic, double tolerance) {
   struct Piece {
     BezierCube b;
@@ -255,7 +255,7 @@ KOKKOS_FORCEINLINE_FUNCTION JacobianFloor<T> jacobian_floor(CellEdges<T> const& 
   return {handedness * dot(a, bc) - ((first + with_s) + higher), broadcast<T>(16 * sign_share) * edges};
 }
 
-/// 0 where all coefficients of cells are positive, 1 where one is not or may be round-off.
+/// A mark for cells: 0 where all coefficients of cells are positive, 1 where one is not or may be round-off.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T doubtful_coefficients(CellEdges<T> const& e, T const& handedness) {
   PlaneNormals<T> const low({e.j.v00, e.j.v01, e.k.v00, e.k.v01}), high({e.j.v10, e.j.v11, e.k.v10, e.k.v11});
@@ -289,7 +289,7 @@ KOKKOS_INLINE_FUNCTION void row_jacobian_signs(CellRow const& row, double* mark)
 
 namespace element {
 
-/// J of a prism along column k, per half of the triangle's edges at corner k.
+/// The sign of J of a prism, by J along column k, per half of the triangle's edges at corner k.
 KOKKOS_INLINE_FUNCTION JacobianSign prism_sign(ElementCorners const& c, double sign, double arithmetic, double zero) {
   Vec3 const r0 = c.at[1] - c.at[0], s0 = c.at[2] - c.at[0], r1 = c.at[4] - c.at[3], s1 = c.at[5] - c.at[3];
   Vec3 const n[3] = {sign * cross(r0, s0), 0.5 * sign * (cross(r0, s1) + cross(r1, s0)), sign * cross(r1, s1)};

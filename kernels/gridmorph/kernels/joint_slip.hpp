@@ -64,7 +64,7 @@ struct JointSlipTable {
     Index const at = first(k) + m;
     return {surfaces(surface(at)), x[place(at)], turn(at) < 0 ? nullptr : &turns(turn(at))};
   }
-  /// u as the surfaces of entry k let it be, and with `Rate` its rate of change.
+  /// Makes u what the surfaces of entry k let it be, and with `Rate` its rate of change.
   template <bool Rate>
   KOKKOS_INLINE_FUNCTION void constrain(Index k, Field<double const> const& x, Vec3& u, Vec3& rate) const {
     auto const surface_at = [&](int m) { return surface_of(k, m, x); };

@@ -34,7 +34,7 @@ struct Pyramids {
   double volume = 0;
 };
 
-/// p: n_faces(), n_corners(face), at(face, corner).
+/// The geometry of a face of p, which has n_faces(), n_corners(face), at(face, corner).
 template <class Points>
 KOKKOS_INLINE_FUNCTION FaceGeometry face_of(Points const& p, int face) {
   return face_geometry(
@@ -47,7 +47,7 @@ KOKKOS_INLINE_FUNCTION ElementCentre centre_of(Points const& p) {
       p.n_faces(), [&](int f) { return face_of(p, f); }, true);
 }
 
-/// sign: -1 where faces point inwards.
+/// The pyramids between the centre and the faces. sign: -1 where faces point inwards.
 template <class Points>
 KOKKOS_INLINE_FUNCTION Pyramids pyramids(Points const& p, double sign) {
   ElementCentre const centre = centre_of(p);

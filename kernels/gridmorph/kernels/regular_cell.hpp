@@ -64,15 +64,16 @@ KOKKOS_FORCEINLINE_FUNCTION Extremes<T> square_extremes(CellEdges<T> const& e) {
   return merged(merged(square_extremes(e.i), square_extremes(e.j)), square_extremes(e.k));
 }
 
-/// 0 for a regular cell, from the extremes of its squared edge lengths and a result that all corners enter.
+/// A mark that is 0 for a regular cell, from the extremes of its squared edge lengths and a result that all corners
+/// enter.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& result) {
   T const limit = collapsed_fraction * collapsed_fraction * squares.max;
   return (squares.min > limit ? broadcast<T>(0) : broadcast<T>(1)) + (result - result);
 }
 
-/// 0 for a regular cell, from the extremes of its squared edge lengths, its volume and its determinant over 27 points,
-/// among which the corners are.
+/// A mark that is 0 for a regular cell, from the extremes of its squared edge lengths, its volume and its determinant
+/// over 27 points, among which the corners are.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& volume, T const& determinant) {
   T const cubed = squares.max * squares.max * squares.max;

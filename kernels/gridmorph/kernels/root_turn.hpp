@@ -123,7 +123,7 @@ struct RootArms {
   }
 };
 
-/// free of every root.
+/// The rotation `free` of every root.
 template <class MemorySpace, class V>
 struct FreeRootTurn {
   RootTable<MemorySpace> table;
@@ -168,7 +168,7 @@ struct FreeRootTurn {
   }
 };
 
-/// raw of every root.
+/// The rotation `raw` of every root.
 template <class MemorySpace, class V>
 struct RawRootTurn {
   RootTable<MemorySpace> table;
@@ -207,7 +207,7 @@ struct EndWallVectors {
   KOKKOS_INLINE_FUNCTION auto moved(Index e) const { return all[3 * e + 2]; }
 };
 
-/// alpha of every end wall.
+/// The rotation alpha of every end wall.
 template <class MemorySpace, class V>
 struct EndWallTurn {
   RootTable<MemorySpace> table;
@@ -269,7 +269,7 @@ struct EndWallTurn {
   }
 };
 
-/// inner of every root, to its slot, and outer.
+/// The rotations `inner` of every root, to its slot, and `outer`.
 template <class MemorySpace, class V>
 struct NearFieldTurn {
   RootTable<MemorySpace> table;

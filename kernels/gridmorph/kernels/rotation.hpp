@@ -66,7 +66,7 @@ KOKKOS_INLINE_FUNCTION Scalar quarter_tangent(Scalar const& sine, Scalar const& 
   return whole > 0 ? sine / whole : Scalar{1};
 }
 
-/// R y - y: exactly zero where r is.
+/// What the rotation by r adds to y, R y - y: exactly zero where r is.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turned_by(V const& r, V const& y) {
   using Scalar = std::decay_t<decltype(dot(r, r))>;
@@ -134,7 +134,7 @@ struct TurnProduct {
   KOKKOS_INLINE_FUNCTION V rotation() const { return (1 / (size + real)) * imaginary; }
 };
 
-/// First one rotation, then the other, the shorter way round; zero where both are.
+/// The rotation that is first one, then the other, the shorter way round; zero where both are.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
   TurnProduct<V> product(first, next);

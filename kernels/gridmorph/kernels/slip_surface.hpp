@@ -80,7 +80,8 @@ struct ProfileView {
     return lo;
   }
 
-  /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
+  /// The value of the profile at an axial position, in differences, so that a constant profile comes back bit for bit;
+  /// the end slopes are continued outside.
   KOKKOS_INLINE_FUNCTION double operator()(double a) const {
     ProfileKnot const &first = knots[0], &last = knots[size - 1];
     if (a <= first.axial) return first.radius + first.slope * (a - first.axial);

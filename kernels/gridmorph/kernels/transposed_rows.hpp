@@ -136,7 +136,8 @@ struct LatticeReaders {
   Index n_chunks = 0;
 };
 
-/// Item: a chunk. parts: eight per chunk, of the corners of its cell, which are computed with in lanes.
+/// The gradients at the corners of the cell of each chunk, which is an item. parts: eight per chunk, of the corners of
+/// its cell, which are computed with in lanes.
 template <class MemorySpace>
 struct LatticeParts {
   LatticeReaders<MemorySpace> readers;
@@ -178,7 +179,8 @@ struct LatticeParts {
     return load_lanes<T>(upper) > 0 ? broadcast<T>(t) : broadcast<T>(1 - t);
   }
 };
-/// Item: a lattice node that is read, which gathers from the cells around it; the others stay zero.
+/// The gradient of each lattice node that is read, which is an item and gathers from the cells around it; the others
+/// stay zero.
 template <class MemorySpace>
 struct LatticeSums {
   LatticeReaders<MemorySpace> readers;
@@ -190,7 +192,7 @@ struct LatticeSums {
     value[readers.lattice_node(k)] = sum;
   }
 };
-/// value: gradients of lattice nodes, from those of what nodes read; parts: workspace.
+/// Gathers `value`, the gradients of lattice nodes, from those of what nodes read; parts: workspace.
 template <class Exec>
 void gather_readers(Exec const& exec, LatticeReaders<typename Exec::memory_space> const& readers,
                     Field<double const> const& x, Vec3 const* gradient, Vec3* parts, Vec3* value) {

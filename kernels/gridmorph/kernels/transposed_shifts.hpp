@@ -35,7 +35,8 @@ struct SlidingShiftsBack {
   }
 };
 
-/// Item (d, chunk): its part of dJ/da_d, of the nodes that move in space and then of those that slide.
+/// The part of dJ/da_d that chunk c has, for each item (d, c): of the nodes that move in space and then of those that
+/// slide.
 template <class MemorySpace>
 struct PartialShiftGradients {
   Kokkos::View<Index const*, MemorySpace> node;

@@ -74,7 +74,7 @@ class TurnedLines {
         add_end(end, f, x, g, n);
       }
   }
-  /// g: gradients of the rotations that the lines hand to nodes.
+  /// Takes into the sums g, gradients of the rotations that the lines hand to nodes.
   KOKKOS_INLINE_FUNCTION void add_turns(double const* t, VectorRow<width> const& g, int n) {
     double f[width];
     for (unsigned end = 0; end < 2; ++end) {

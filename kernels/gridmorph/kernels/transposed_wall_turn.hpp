@@ -143,7 +143,7 @@ struct FanTwist {
   }
 
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Vec3 rotation() const { return twist * axis; }
-  /// g: gradient of rotation().
+  /// The gradient of what the twist takes from that of rotation(), g.
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION TwistGradient gradient(Vec3 const& g) const {
     TwistGradient of;
     double const whole = sine * sine + cosine * cosine;
@@ -228,7 +228,7 @@ KOKKOS_INLINE_FUNCTION KeptHeightGradient kept_height_gradient(Vec3 const& line,
 /// Rotation of a fan, its swing from one normal to the other and its twist, and the gradients of what it takes.
 class FanTurn {
  public:
-  /// moved: not zero.
+  /// The turn of a fan whose normal goes from `normal` to `moved`, which is not zero.
   KOKKOS_FORCEINLINE_FUNCTION FanTurn(Vec3 const& normal, Vec3 const& moved, FanMoments const& sums)
       : normal_(normal), moved_(moved), twist_((1 / norm(moved)) * moved, turn_between(normal, moved), sums) {}
 
@@ -238,7 +238,7 @@ class FanTurn {
     Vec3 moved;           ///< of the normal after
     TwistGradient twist;  ///< of arms
   };
-  /// g: of rotation().
+  /// The gradient of what the turn takes from that of rotation(), g.
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Gradient gradient(Vec3 const& g) const {
     Vec3 of_swing, of_twist;
     add_turn_then(twist_.swing, twist_.rotation(), g, of_swing, of_twist);

@@ -37,7 +37,7 @@ struct TurnWeights {
   double lower, upper;
 };
 
-/// P of the law `far`.
+/// The function P of the law `far`.
 KOKKOS_INLINE_FUNCTION double far_growth(double s) {
   using std::sqrt;
   return sqrt(sqrt(sqrt(1 + s * s / (1 + s))));

@@ -16,7 +16,7 @@ struct TurnedRow {
   double const* t;
   int n;
 
-  /// x: positions in the frame of the chain.
+  /// Adds what the ends turn a row of nodes by. x: positions in the frame of the chain.
   template <class Step>
   KOKKOS_INLINE_FUNCTION void add_to(Step step, VectorRow<width> const& x, VectorRow<width>& v) const {
     Weights f;

@@ -21,7 +21,8 @@ struct WallNode {
   bool defined = false;  ///< false where the normal or the line vanishes (poles) or a node is not finite
 };
 
-/// normal: of the wall, of any length; line: from the wall node to the first inner node.
+/// The measures at a node of a wall. normal: of the wall, of any length; line: from the wall node to the first inner
+/// node.
 KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& normal, Vec3 const& line) {
   using compat::math::acos;
   double const area = norm(normal), length = norm(line);

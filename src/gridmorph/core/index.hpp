@@ -59,7 +59,7 @@ struct Orientation {
     }
     return o;
   }
-  /// +1 if it keeps handedness, -1 if it mirrors.
+  /// The sign of the orientation: +1 if it keeps handedness, -1 if it mirrors.
   [[nodiscard]] int determinant() const {
     int swaps = 0;
     for (int a = 0; a < 3; ++a)

@@ -15,7 +15,7 @@ struct CornerPoint {
   std::array<double, 2> along;  ///< the same point along each wall from the corner
 };
 
-/// y over x in straight pieces from (0, 0), both ascending, on with slope 1.
+/// A relation y over x in straight pieces from (0, 0), both ascending, on with slope 1.
 class Relation {
  public:
   /// Adds a point of the relation; nothing where that would not ascend.

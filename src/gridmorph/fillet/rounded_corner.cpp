@@ -83,7 +83,8 @@ class CornerRounding {
   }
 
  private:
-  /// Cheaply: what moves is within the reach along a wall, and not much more than a radius off it.
+  /// Whether a point is too far off to move, told cheaply: what moves is within the reach along a wall, and not much
+  /// more than a radius off it.
   [[nodiscard]] bool out_of_reach(Vec3 const& p, SectionPlace const& at) const {
     BetweenSections const section = sections_.between(at);
     return distance(p, section.root()) > 1.1 * std::hypot(section.reach(), 1.5 * section.radius());

@@ -15,7 +15,8 @@ struct WallLine {
   double reach = 0;  ///< arc length beyond which nothing moves
 
   [[nodiscard]] double taken() const { return curve.arc(std::size_t(layers)); }
-  /// 1 at the new corner, 0 from `reach` on: 1 - c1((s - taken) / (reach - taken)), c1(t) = t^2 (3 - 2 t).
+  /// The share of the corner in a node: 1 at the new corner, 0 from `reach` on: 1 - c1((s - taken) / (reach - taken)),
+  /// c1(t) = t^2 (3 - 2 t).
   [[nodiscard]] double share(int node) const;
 };
 

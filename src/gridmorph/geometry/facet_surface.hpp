@@ -53,7 +53,7 @@ struct FacetSurface {
   /// Diagonal of the box around the points.
   [[nodiscard]] double size() const;
 
-  /// Borrows the tables: valid on the host while this surface lives unchanged.
+  /// The surface as kernels see it. Borrows the tables: valid on the host while this surface lives unchanged.
   [[nodiscard]] kernels::FacetSurfaceView view() const {
     return {{points.data(), facets.data(), boxes.data()}, normals.data(), bends.data()};
   }

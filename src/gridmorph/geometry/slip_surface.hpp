@@ -44,7 +44,7 @@ struct RevolutionProfile {
   /// Outside the knots the end slope is continued.
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
-  /// Borrows the tables: valid on the host while this profile lives unchanged.
+  /// The profile as kernels see it. Borrows the tables: valid on the host while this profile lives unchanged.
   [[nodiscard]] kernels::ProfileView view() const {
     return {knots.data(), int(knots.size()), bucket_piece.data(), std::max(0, int(bucket_piece.size()) - 1)};
   }

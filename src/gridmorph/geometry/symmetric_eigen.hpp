@@ -13,7 +13,8 @@ namespace gridmorph {
 template <std::size_t N>
 using SmallMatrix = std::array<std::array<double, N>, N>;
 
-/// Greatest value first, equal ones in the order of their axes; vector[k] belongs to value[k] and has length 1.
+/// Eigenvalues and eigenvectors: greatest value first, equal ones in the order of their axes; vector[k] belongs to
+/// value[k] and has length 1.
 template <std::size_t N>
 struct SymmetricEigen {
   std::array<double, N> value{};

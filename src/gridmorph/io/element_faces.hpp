@@ -29,7 +29,7 @@ struct ElementShape {
   int corners;
 };
 
-/// nullptr for shapes that are not read.
+/// The shape with an ElementType_t number; nullptr for shapes that are not read.
 ElementShape const* element_shape(std::int64_t number);
 
 /// Appends the faces of one element; `nodes` are its numbers in the mesh.

@@ -25,7 +25,7 @@ class ElementZoneWriter {
   ElementZoneWriter(cgns::File& file, Mesh const& mesh, WriteOptions const& options);
 
   void begin();
-  /// values: x, y, z of this zone's nodes. Throws IoError for elements and faces that cannot be written.
+  /// Writes zone z. values: x, y, z of its nodes. Throws IoError for elements and faces that cannot be written.
   void zone(int z, std::array<double const*, 3> const& values);
 
  private:

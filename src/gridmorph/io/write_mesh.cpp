@@ -52,7 +52,7 @@ class MeshWriter {
   }
 
  private:
-  /// "Base/Zone" in a mesh of several bases, otherwise "Zone" in a base called "Base".
+  /// The names of base and zone: "Base/Zone" in a mesh of several bases, otherwise "Zone" in a base called "Base".
   static std::pair<std::string, std::string> split(std::string const& zone_name) {
     auto const slash = zone_name.find('/');
     if (slash == std::string::npos) return {"Base", zone_name};
@@ -173,7 +173,8 @@ class MeshWriter {
   std::map<std::string, std::set<std::string>> family_types_;  ///< BC types of the patches a family comes first for
 };
 
-/// More than the file will take: both formats spend one to three kilobytes on a node and its little data.
+/// The bytes that a file needs, more than it will take: both formats spend one to three kilobytes on a node and its
+/// little data.
 std::uint64_t bytes_needed(Mesh const& mesh) {
   std::uint64_t nodes = 16 + 3 * mesh.families.size();
   for (auto const& patch : mesh.patches) nodes += 4 + 3 * patch.families.size();

@@ -25,7 +25,7 @@ constexpr double largest_extrapolation = 2;
 /// Variances above this share of the largest are directions in which the points have an edge; the others are across the
 /// surface that they lie on.
 constexpr double spanned = 0.05;
-/// Beyond the neighbours by less than this share of their reach is rounding.
+/// The share of the neighbours' reach by less than which a place beyond them is at the edge, but for rounding.
 constexpr double at_the_edge = 1e-6;
 
 struct Neighbours {

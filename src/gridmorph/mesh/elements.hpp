@@ -13,7 +13,7 @@
 
 namespace gridmorph {
 
-/// "triangle", "tetrahedron", ...
+/// The name of a type of element: "triangle", "tetrahedron", ...
 std::string_view to_string(ElementType type);
 
 /// Elements of the mesh's own dimension (volumes in 3-D, surfaces in 2-D), zone after zone in file order.

@@ -183,12 +183,12 @@ struct Mesh {
   [[nodiscard]] double size() const;
 };
 
-/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone 'Fluid' node 17", as the file
-/// counts.
+/// The name of a node in messages: "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone
+/// 'Fluid' node 17", as the file counts.
 std::string describe_node(Mesh const& mesh, Index node);
-/// "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
+/// The name of a range of nodes in messages: "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
 std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range);
-/// "i_min" ... "k_max" for axis 0..2 and side 0 or 1.
+/// The name of a face: "i_min" ... "k_max" for axis 0..2 and side 0 or 1.
 std::string_view face_name(int axis, int side);
 /// Patch name for messages: "'blade' (BC 'blade_ss', zone 'Zone 1')".
 std::string describe_patch(Mesh const& mesh, Patch const& patch);

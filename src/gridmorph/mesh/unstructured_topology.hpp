@@ -86,7 +86,7 @@ BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology con
 /// point; its own number where there is none.
 std::vector<Index32> coincident_nodes(Mesh const& mesh);
 
-/// (n_nodes) 1 for nodes that a periodic connection pairs.
+/// Marks of nodes, (n_nodes): 1 for those that a periodic connection pairs.
 std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;

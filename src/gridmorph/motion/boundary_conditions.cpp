@@ -151,7 +151,8 @@ class RulesOfConnections {
     }
   }
 
-  /// Thin inlets and walls, all of whose nodes lie on the edges of sides, are none of these.
+  /// Whether a patch has no kind that tells what it is. Thin inlets and walls, all of whose nodes lie on the edges of
+  /// sides, have one.
   [[nodiscard]] bool has_no_kind(std::size_t p) const {
     return mesh_.patches[p].kind == PatchKind::other || mesh_.patches[p].kind == PatchKind::connection;
   }

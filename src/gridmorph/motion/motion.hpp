@@ -47,7 +47,8 @@ struct SpanwiseTable {
     spline,  ///< C1 cubics without overshoot: level at extremes, harmonic means of the secants elsewhere
     linear
   };
-  /// (span fraction, value), span fractions strictly increasing. Beyond the first and the last: their values. Empty: 0.
+  /// The stations (span fraction, value), span fractions strictly increasing. Beyond the first and the last: their
+  /// values. Empty: 0.
   std::vector<std::pair<double, double>> stations;
   Interpolation interpolation = Interpolation::spline;
 

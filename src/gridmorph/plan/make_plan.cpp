@@ -57,7 +57,7 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
   return limits;
 }
 
-/// "zone 'a' [1:13, 1:48, 1:20]", and in which other zones the block has pieces.
+/// The name of a block in messages: "zone 'a' [1:13, 1:48, 1:20]", and in which other zones the block has pieces.
 std::string block_name(Mesh const& mesh, Topology const& topology, int block) {
   auto const& pieces = topology.blocks[block].pieces;
   Piece const& first = topology.lattice.pieces()[pieces.front().piece];

@@ -34,8 +34,8 @@ std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests con
 /// anything else.
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given);
 
-/// "the displacement by case.toml:12 takes 47 nodes off the slip surface of 'hub', most zone ... by 0.0012, 3 % of its
-/// largest, 0.04; they are put back ...".
+/// A trim in words: "the displacement by case.toml:12 takes 47 nodes off the slip surface of 'hub', most zone ... by
+/// 0.0012, 3 % of its largest, 0.04; they are put back ...".
 std::string describe(Trim const& trim);
 /// Throws MotionError that lists those of which more than half is undone, or more than `allowed` where that is larger.
 void refuse_undone(std::vector<Trim> const& trims, double allowed);

@@ -138,7 +138,7 @@ void add_cyclics(std::vector<BoundaryEntry const*> const& sides, CsrGraph const&
 
 namespace {
 
-/// "(0 0 1)"; nothing where there are no three numbers.
+/// The vector in a text such as "(0 0 1)"; nothing where there are no three numbers.
 std::optional<Vec3> vector_of(std::string_view text) {
   std::string numbers(text);
   std::replace_if(

@@ -35,7 +35,7 @@ class Text {
   /// Name of the section that begins next ("Nodes" of $Nodes), what follows it being next; empty at the end of the
   /// file.
   std::string section();
-  /// Past $End and the name, which has to be next.
+  /// Goes past $End and the name, which have to be next.
   void end_section(std::string const& name);
   /// Goes past a section without a look at what is in it.
   void skip_section(std::string const& name);

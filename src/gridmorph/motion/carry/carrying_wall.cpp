@@ -57,7 +57,7 @@ class Reach {
     own = std::min(own, away_[std::size_t(v)]);
   }
 
-  /// Half way between two of them the wall has its own motion.
+  /// Parts features from one another: half way between two of them the wall has its own motion.
   void part_features() {
     auto const neighbours = surface_.neighbours();
     for (std::size_t v = 0; v < neighbours.size(); ++v)

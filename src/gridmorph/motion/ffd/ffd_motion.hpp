@@ -21,7 +21,7 @@ class FfdMotion {
   /// begins its messages and notes. Cost O(nodes (degree + 1)^3).
   FfdMotion(Boundary const& boundary, std::vector<int> const& patches, FfdRule const& rule, std::string const& name,
             std::vector<std::string>& notes);
-  /// Other displacements of the same control points; cost O(control points).
+  /// The motion by other displacements of the same control points. Cost O(control points).
   FfdMotion(FfdMotion const& other, FfdRule const& rule, std::string const& name);
 
   /// Displacement of points, nodes or others; exactly zero outside of the lattice, exactly that of the control points

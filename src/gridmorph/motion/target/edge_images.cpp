@@ -139,7 +139,8 @@ class EdgeMapper {
     };
   }
 
-  /// Half the length of the shortest chain that ends in a corner: farther away a sharp turn is not the same one.
+  /// Finds how far corners reach: half the length of the shortest chain that ends in a corner: farther away a sharp
+  /// turn is not the same one.
   void find_reach() {
     reach_.assign(points_.size(), std::numeric_limits<double>::infinity());
     for (FeatureChain const& chain : feature_chains(neighbours_, corner_)) {

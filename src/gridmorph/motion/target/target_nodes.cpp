@@ -33,7 +33,7 @@ class GridMatcher {
     target.resize(surface.points.size());
   }
 
-  /// False when no free grid has the size of the patch.
+  /// Lays a patch over a grid of the target; false when no free grid has the size of the patch.
   bool place(PatchGrid const& patch, std::vector<std::string>& found) {
     struct Choice {
       Cost cost{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

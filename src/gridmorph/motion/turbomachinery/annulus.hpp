@@ -31,7 +31,7 @@ class Annulus {
   [[nodiscard]] FlowPosition position(MeridionalPoint const& p) const;
   /// position(p).m, also where there is no span, beyond the ends of hub and case.
   [[nodiscard]] double along(MeridionalPoint const& p) const { return turning_ ? turning_->position(p).m : p.axial; }
-  /// 0 at the hub, 1 at the case.
+  /// The span fraction of a point: 0 at the hub, 1 at the case.
   [[nodiscard]] double span(MeridionalPoint const& p) const { return position(p).h; }
   /// Distance from hub to case through p.
   [[nodiscard]] double height(MeridionalPoint const& p) const;

@@ -9,7 +9,7 @@ namespace gridmorph {
 
 class SlicedPart {
  public:
-  /// Keeps pointers to `cuts` and `input`. Cost: some hundred cuts.
+  /// Finds the sections of a part. Keeps pointers to `cuts` and `input`. Cost: some hundred cuts.
   SlicedPart(FacetCuts const& cuts, SliceInput const& input, SurfacePart triangles);
 
   double middle = 0;  ///< of its span

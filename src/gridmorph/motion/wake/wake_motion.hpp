@@ -32,7 +32,8 @@ class WakeMotion {
              std::vector<int> const& patches, SlipSurfaces const& surfaces, WallFaces::Displacement const& displacement,
              std::vector<std::string>& notes, Beside beside = {});
 
-  /// Exactly zero where the trailing edge and the field beside rest. Cost O(log n), times blades and periodic copies.
+  /// The displacement of a point; exactly zero where the trailing edge and the field beside rest. Cost O(log n), times
+  /// blades and periodic copies.
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:

@@ -31,7 +31,8 @@ struct CoarseMesh {
   [[nodiscard]] int place(int zone, int axis, int fine_index) const;
 };
 
-/// Cost: one visit to each node of the lines kept, a share of about 12 / every^2 of the mesh.
+/// The mesh of the lines kept. Cost: one visit to each node of the lines kept, a share of about 12 / every^2 of the
+/// mesh.
 CoarseMesh coarsen(Mesh const& mesh, Links const& links, std::vector<ZoneCuts> planes);
 
 }  // namespace gridmorph

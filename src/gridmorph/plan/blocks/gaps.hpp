@@ -28,7 +28,7 @@ std::vector<char> gap_walls(Mesh const& mesh, Links const& links, BoundaryMotion
 class Gaps {
  public:
   Gaps() = default;
-  /// Cost: linear in the entities of the cut mesh.
+  /// Finds the gap layers. Cost: linear in the entities of the cut mesh.
   Gaps(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion, std::vector<char> const& walls);
 
   [[nodiscard]] bool any() const { return !axis_of_block_.empty(); }

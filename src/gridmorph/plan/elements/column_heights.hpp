@@ -14,9 +14,9 @@ namespace gridmorph {
 ///     room = min(gap / 3, max(gap - 2 motion, gap / 10))
 double room_in_gap(double gap, double motion);
 
-/// (n_nodes) For wall nodes where the nearest other boundary lies ahead (within 60 degrees of where the column leads),
-/// its distance; infinite elsewhere: a boundary beside, on which the wall ends, leaves no gap. Cost O(nodes of
-/// columns).
+/// The gap ahead of each node (n_nodes): for wall nodes where the nearest other boundary lies ahead (within 60 degrees
+/// of where the column leads), the distance to it; infinite elsewhere: a boundary beside, on which the wall ends,
+/// leaves no gap. Cost O(nodes of columns).
 std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& columns, NearestSource const& from_other);
 
 /// Where columns end, by their wall nodes; 0 where there is none.

@@ -155,7 +155,8 @@ class UnstructuredPlanner {
   void plan_residual();
   /// Share of each node in the area of the boundary; nodes that are on no boundary face have a mean one.
   [[nodiscard]] std::vector<double> areas(std::vector<Index32> const& nodes) const;
-  /// d / (d + distance from `from`), d being the distance from the end of the moving wall's column.
+  /// The share d / (d + distance from `from`) of the residual that a node takes, d being the distance from the end of
+  /// the moving wall's column.
   [[nodiscard]] double fade(std::size_t n, NearestSource const& from) const;
   std::function<double(Index32, Index32)> inverse_distance() const;
   void plan_other_nodes();
