@@ -68,8 +68,8 @@ struct VectorMoments {
   }
 };
 
-/// Of moments of rotated vectors, with those before as first and those after as second ones: (real, imaginary), real
-/// not negative; no rotation where the best one is not the only one.
+/// The quaternion (real, imaginary), real not negative, of the rotation that fits best to moments of rotated vectors,
+/// with those before as first and those after as second ones; no rotation where the best one is not the only one.
 KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real, Vec3& imaginary) {
   auto const& m = s.m;
   Vec3 const c = s.crossed();
@@ -174,12 +174,12 @@ struct BodyWalls {
   Index n_wall_chunks = 0;                              ///< chunks of bodies
 };
 
-/// R - I around the nodes that drive, by their motion; or its rate.
+/// The gradients R - I around the nodes that drive, by their motion; or the rates of these.
 struct FrameGradients {
   AffineMotion const* frame;
   KOKKOS_INLINE_FUNCTION Mat3 const& operator[](Index n) const { return frame[n].gradient; }
 };
-/// By rotations.
+/// The gradients R - I around the nodes that drive, by their rotations.
 struct TurnGradients {
   Field<double const> turn;
   KOKKOS_INLINE_FUNCTION Mat3 operator[](Index n) const {
@@ -187,7 +187,8 @@ struct TurnGradients {
   }
 };
 
-/// Per chunk of wall nodes: sum of w (R - I)^T. Chunks are those of the plan, so that sums do not depend on threads.
+/// The sum of w (R - I)^T of each chunk of wall nodes. Chunks are those of the plan, so that sums do not depend on
+/// threads.
 template <class MemorySpace, class Gradients>
 struct SumBodyWalls {
   BodyWalls<MemorySpace> walls;
@@ -219,7 +220,7 @@ KOKKOS_INLINE_FUNCTION V mean_turn(BodyWalls<MemorySpace> const& walls, Index bo
   return best_turn<V>(s, rate, walls.axis(body));
 }
 
-/// Per body: its rotation.
+/// The rotation of each body.
 template <class MemorySpace>
 struct MeanTurns {
   BodyWalls<MemorySpace> walls;
@@ -230,7 +231,7 @@ struct MeanTurns {
   KOKKOS_INLINE_FUNCTION void operator()(Index b) const { turn.set(b, mean_turn<Vec3>(walls, b, sum)); }
 };
 
-/// Per body: the quaternion of half its rotation; with rates: the rate of that.
+/// The quaternion of half the rotation of each body; with rates the rate of that.
 template <class MemorySpace, class V>
 struct TurnBodies {
   BodyWalls<MemorySpace> walls;
@@ -247,7 +248,7 @@ struct TurnBodies {
   }
 };
 
-/// Per chunk of slots, those of other boundaries included: sum of w u.
+/// The sum of w u of each chunk of slots, those of other boundaries included.
 template <class MemorySpace>
 struct SumBodyShifts {
   BodyWalls<MemorySpace> walls;
@@ -262,7 +263,7 @@ struct SumBodyShifts {
   }
 };
 
-/// Per body: its mean displacement less that of the other boundaries; or the rate of that.
+/// The shift of each body: its mean displacement less that of the other boundaries; or the rate of that.
 template <class MemorySpace>
 struct ShiftBodies {
   BodyWalls<MemorySpace> walls;
@@ -298,7 +299,7 @@ struct BodyTurnField {
   Vec3 const *shift, *shift_rate;                        ///< (n_bodies)
   Field<double const> x;
 
-  /// R y - y of the share f of body b's rotation.
+  /// What R y - y is for the share f of body b's rotation.
   KOKKOS_INLINE_FUNCTION V turned(Index b, double f, Vec3 const& y) const {
     auto const h = Quaternion<V>::share(of_body(b), f);
     // The square of (1 - less) + imaginary.
@@ -340,7 +341,7 @@ struct BodyTurnField {
   }
 };
 
-/// u(node) loses what the turns add.
+/// u(node) loses what the turns of bodies add to it.
 template <class MemorySpace, class V>
 struct TakeBodyTurns {
   BodyTurnField<MemorySpace, V> field;
@@ -369,7 +370,7 @@ struct TakeTurnsFromFrames {
   }
 };
 
-/// All nodes gain what the turns add.
+/// Adds to the displacement of all nodes what the turns and shifts of bodies give them.
 template <class MemorySpace, class V>
 struct AddBodyTurns {
   BodyTurnField<MemorySpace, V> field;

@@ -141,7 +141,7 @@ struct BoxGroup {
     }
   }
 
-  /// Bit k: box k holds the point, or is next to it.
+  /// The boxes that hold a point or are next to it: bit k for box k.
   KOKKOS_INLINE_FUNCTION unsigned holding(RoundedPoint const& p) const {
 #if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__)
     // Four boxes at once, which compilers do not do on their own.
@@ -188,7 +188,7 @@ struct BoxGroup {
   }
 };
 
-/// Borrows its groups.
+/// A tree of boxes. Borrows its groups.
 struct BoxTreeView {
   static constexpr int max_levels = 11;  ///< 8^11 things
 

@@ -45,7 +45,7 @@ struct HexCell {
 /// An edge below this fraction of the longest edge of its cell counts as collapsed to a point.
 inline constexpr double collapsed_fraction = 1e-12;
 
-/// Stands for an unbounded ratio; plain arithmetic so that it is the same on host and device.
+/// What stands for an unbounded ratio: plain arithmetic so that it is the same on host and device.
 inline constexpr double unbounded = HUGE_VAL;
 
 KOKKOS_INLINE_FUNCTION bool is_finite(double a) { return a - a == 0; }
@@ -65,7 +65,7 @@ KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double c, d
   return flat_fraction * a * b * c + 0x1p-46 * x * (a * b + b * c + c * a);
 }
 
-/// The same in 2-D, where Jacobians are areas [length^2].
+/// The size of Jacobians that mean zero in 2-D, where they are areas [length^2].
 KOKKOS_INLINE_FUNCTION double jacobian_tolerance(double a, double b, double x) {
   return flat_fraction * a * b + 0x1p-46 * x * (a + b);
 }
@@ -141,7 +141,7 @@ KOKKOS_INLINE_FUNCTION HexTangents hex_tangents(Vec3 const (&edge)[4]) {
   return t;
 }
 
-/// True where every edge that the tangent at (p, q) is made of is collapsed; bits: the direction's 4 bits.
+/// Whether every edge that the tangent at (p, q) is made of is collapsed; bits: the direction's 4 bits.
 KOKKOS_INLINE_FUNCTION bool tangent_collapsed(unsigned bits, int p, int q) {
   for (int b = q / 2; b <= (q + 1) / 2; ++b)
     for (int a = p / 2; a <= (p + 1) / 2; ++a)

@@ -215,8 +215,8 @@ struct RowVerdicts {
   double mark[N];             ///< nonzero: not a regular cell, the others mean nothing; use cell_measures
 };
 
-/// The same values as row_measures gives, angles as cosines. Cost: about 720 flops per cell, 8 square roots, 9
-/// divisions.
+/// The verdicts on the cells of a row, with the values that row_measures gives, angles as cosines. Cost: about 720
+/// flops per cell, 8 square roots, 9 divisions.
 template <int W, int N>
 KOKKOS_INLINE_FUNCTION void row_verdicts(CellRow const& row, RowVerdicts<N>& v) {
   double volume[N];
@@ -233,7 +233,7 @@ KOKKOS_INLINE_FUNCTION void row_verdicts(CellRow const& row, RowVerdicts<N>& v) 
   });
 }
 
-/// Of up to N cells.
+/// The relative displacements of up to N cells.
 template <int N>
 struct RowRelativeDisplacements {
   double along[3][N];  ///< i, j, k

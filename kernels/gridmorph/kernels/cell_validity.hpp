@@ -11,7 +11,7 @@
 
 namespace gridmorph::kernels {
 
-/// What one chunk of cells gives.
+/// The verdict on one chunk of cells.
 struct ChunkValidity {
   double smallest_determinant = 1;
   Index inverted = 0;
@@ -65,8 +65,8 @@ void check_blocks(Exec const& exec, Kokkos::View<CellChunk*, typename Exec::memo
       });
 }
 
-/// The same for elements; determinant_of(element) is 1 where there is none to look at. Those of zone z begin at
-/// first_element(z).
+/// The verdict on each chunk of elements, into of_chunk; determinant_of(element) is 1 where there is none to look at.
+/// Those of zone z begin at first_element(z).
 template <class Exec, class DeterminantOf>
 void check_elements(Exec const& exec, Kokkos::View<CellChunk*, typename Exec::memory_space> const& chunks,
                     Kokkos::View<Index*, typename Exec::memory_space> const& first_element,
@@ -85,7 +85,8 @@ struct ClearValidity {
   KOKKOS_INLINE_FUNCTION void operator()(Index) const { of_mesh() = Validity{}; }
 };
 
-/// Neither the smallest of some values nor the sum of whole numbers depends on the order in which they come.
+/// Joins the verdicts on all chunks into that on the mesh. Neither the smallest of some values nor the sum of whole
+/// numbers depends on the order in which they come.
 template <class MemorySpace, class Validity>
 struct JoinChunks {
   Kokkos::View<ChunkValidity const*, MemorySpace> of_chunk;

@@ -82,7 +82,7 @@ struct CommonMove {
   double share;        ///< 1, or 0: both are I
 };
 
-/// F and its inverse.
+/// The move by A, with F and its inverse; both are I where `pulls` is not set or F nearly has no inverse.
 KOKKOS_INLINE_FUNCTION CommonMove common_move(CommonFrame const& frame, CommonMap const& map, bool pulls) {
   CommonMove out{map, {}, {}, 0};
   Mat3 f, inverse;
@@ -110,7 +110,7 @@ KOKKOS_INLINE_FUNCTION CommonMove common_move(CommonFrame const& frame, CommonMa
   return {map, f, inverse, 1};
 }
 
-/// Item: the moments of vectors at one chunk of a list of places, displaced ones where there are any.
+/// An item: the moments of vectors at one chunk of a list of places, displaced ones where there are any.
 template <class MemorySpace>
 struct CommonMoments {
   CommonFrame frame;
@@ -180,7 +180,7 @@ struct TakeCommonMotion {
     rest[k] = norm(left) > rounding * size ? move->back * left : Vec3{};
   }
 };
-/// Its rate, where A changes by the map of `rate`.
+/// The rate of what TakeCommonMotion leaves, where A changes by the map of `rate`.
 template <class MemorySpace>
 struct TakeCommonRate {
   CommonFrame frame;
@@ -195,7 +195,7 @@ struct TakeCommonRate {
   }
 };
 
-/// v becomes v + A(x + v) of all nodes.
+/// Adds the motion in common to the displacement v of all nodes, which becomes v + A(x + v).
 struct AddCommonMotion {
   CommonFrame frame;
   Field<double const> x;
@@ -204,7 +204,7 @@ struct AddCommonMotion {
 
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] += move->map(frame, x[n] + move->share * u[n]); }
 };
-/// Its rate, before u is that of AddCommonMotion.
+/// The rate of what AddCommonMotion makes of u; u is still what it was before.
 struct AddCommonRate {
   CommonFrame frame;
   Field<double const> x;
@@ -256,7 +256,7 @@ struct CommonDefects {
     defect[r] = Vec3{frame.y(0, at), frame.y(1, at), frame.y(2, at)} - means[target(r)];
   }
 };
-/// y of all nodes.
+/// The coordinates y of all nodes in a CommonFrame.
 struct CommonCoordinates {
   CommonFrame frame;
   Field<double const> x;
@@ -265,7 +265,7 @@ struct CommonCoordinates {
     y[n] = {frame.y(0, x[n]), frame.y(1, x[n]), frame.y(2, x[n])};
   }
 };
-/// Item: what a chunk of targets, which get what their rows miss of A, hands back to A.
+/// An item: what a chunk of targets, which get what their rows miss of A, hands back to A.
 template <class MemorySpace>
 struct CommonDefectsBack {
   Kokkos::View<std::int32_t const*, MemorySpace> target;

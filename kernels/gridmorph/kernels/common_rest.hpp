@@ -1,9 +1,10 @@
 // What displacements have beyond the motion in common (common_motion.hpp), so that what rounding makes of large ones
 // stays out of means and sums:
 //
-//   the fit once more, to u - A(x) at boundary nodes, which mathematics has nothing left for: A is then good to the
-//   last bits of its coefficients u - A(x) of all nodes, whose means get A at their own place nodes that go along with
-//   another one: A(x) less A there besides
+//   - the fit once more, to u - A(x) at boundary nodes, which mathematics has nothing left for: A is then good to the
+//     last bits of its coefficients
+//   - u - A(x) of all nodes, whose means get A at their own place
+//   - nodes that go along with another one: A(x) less A there besides
 //
 // Cost: 72 bytes per node.
 #pragma once

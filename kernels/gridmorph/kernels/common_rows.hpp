@@ -59,7 +59,7 @@ struct CommonMoves {
   }
 };
 
-/// g becomes F^T g in a row of gradients.
+/// Makes F^T g of every gradient g in a row.
 template <int width>
 KOKKOS_INLINE_FUNCTION void pull_row(CommonMove const& move, int n, VectorRow<width>& g) {
   Mat3 const back = transpose(move.forward);

@@ -10,8 +10,8 @@
 // top is the apex: halfway up a lateral face has the points of a TRI_6, J has a factor (1 - w)^2, which is left out as
 // in element_quality.hpp. So J, by the element's own coordinates, is a polynomial of some degree in each of u, v, w:
 //
-//   triangle (2, 2)   quadrilateral (3, 3)   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron
-//   (5, 5, 5)
+//   triangle (2, 2)   quadrilateral (3, 3)
+//   tetrahedron (3, 3, 3)   prism (4, 4, 5)   pyramid (5, 5, 3)   hexahedron (5, 5, 5)
 //
 // Its Bezier coefficients, found from as many values, bound it, and those of its parts ever more closely: A. Johnen,
 // J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", J. Comput. Phys. 233 (2013) 359.
@@ -202,7 +202,7 @@ KOKKOS_INLINE_FUNCTION double jacobian_of_prism(CurvedElement const& c, Vec3 con
   return dot(cross(r, s), t);
 }
 
-/// J at a point of the cube; of pyramids with the factor (1 - w)^2.
+/// The value of J at a point of the cube; of pyramids with the factor (1 - w)^2.
 KOKKOS_INLINE_FUNCTION double jacobian(CurvedElement const& c, Vec3 const& p, Vec3 const& normal) {
   switch (c.type) {
     case ElementType::triangle: return jacobian_of_triangle(c, p, normal);
@@ -212,7 +212,7 @@ KOKKOS_INLINE_FUNCTION double jacobian(CurvedElement const& c, Vec3 const& p, Ve
   }
 }
 
-/// J dV / (du dv dw) over J.
+/// The ratio of J dV / (du dv dw) to J.
 KOKKOS_INLINE_FUNCTION double collapse(ElementType type, Vec3 const& p) {
   switch (type) {
     case ElementType::triangle:
@@ -227,7 +227,7 @@ inline constexpr int max_degree = 5;
 struct Degrees {
   int of[3];
 };
-/// Of J in u, v, w, pyramids with their factor; 0 along w in 2-D.
+/// The degrees of J in u, v, w, of pyramids with their factor; 0 along w in 2-D.
 KOKKOS_INLINE_FUNCTION Degrees degrees(ElementType type) {
   switch (type) {
     case ElementType::triangle: return {{2, 2, 0}};
@@ -314,7 +314,7 @@ struct BezierBox {
   }
 };
 
-/// Of the whole element, pyramids without their factor; tables[d]: bezier_of_values(d).
+/// Bezier coefficients of J of the whole element, of pyramids without their factor.
 KOKKOS_INLINE_FUNCTION BezierBox bezier_box(CurvedElement const& c, double sign, Vec3 const& normal) {
   BezierBox b;
   b.degree = degrees(c.type);

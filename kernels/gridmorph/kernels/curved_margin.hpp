@@ -20,7 +20,8 @@
 
 namespace gridmorph::kernels {
 
-/// c: complete. -1 where a node is not finite; sign: -1 where the element is numbered inside out.
+/// The margin of a curved element. c: complete. -1 where a node is not finite; sign: -1 where the element is numbered
+/// inside out.
 KOKKOS_INLINE_FUNCTION double curved_margin(CurvedElement const& c, double sign, Vec3 const& plane_normal) {
   double least = unbounded, largest = 0, sum = 0;
   curved::bezier_box(c, sign, plane_normal).for_each([&](double b, bool) {

@@ -142,7 +142,7 @@ KOKKOS_INLINE_FUNCTION CentredMap quad_map(Vec3 const& a, Vec3 const& b, Vec3 co
   return m;
 }
 
-/// Linear between a bottom and a top.
+/// The map of a layer, linear between a bottom and a top.
 KOKKOS_INLINE_FUNCTION CentredMap layer_map(CentredMap const& bottom, CentredMap const& top) {
   CentredMap m;
   m.value = 0.5 * (bottom.value + top.value);
@@ -156,7 +156,7 @@ KOKKOS_INLINE_FUNCTION CentredMap layer_map(CentredMap const& bottom, CentredMap
   return m;
 }
 
-/// x - p: relative to the point, so that the round-off is that of the element's size.
+/// The map of an element as x - p: relative to the point, so that the round-off is that of the element's size.
 KOKKOS_INLINE_FUNCTION CentredMap centred_map(ElementType type, ElementCorners const& c, Vec3 const& p) {
   CentredMap m;
   Vec3 const* const x = c.at;
@@ -201,7 +201,7 @@ struct NormalForm {
   bool pyramid = false;
   bool sound = false;  ///< the Jacobian at the centre has an inverse
 
-  /// N(xi) and its columns of derivatives.
+  /// The map N(xi) and its columns of derivatives.
   KOKKOS_INLINE_FUNCTION Vec3 bend(Vec3 const& xi, Vec3& dr, Vec3& ds, Vec3& dt) const {
     double const r = xi.x, s = xi.y, t = xi.z;
     if (!pyramid) {
@@ -318,6 +318,7 @@ KOKKOS_INLINE_FUNCTION Vec3 clamp_local(ElementType type, Vec3 const& local) {
       if (over > 1) {
         l.x = clamp(l.x - 0.5 * (over - 1), 1);
         l.y = clamp(l.y - 0.5 * (over - 1), 1);
+        // Rounding may leave the sum above one.
         l.y = smaller(l.y, 1 - l.x);
       }
       break;

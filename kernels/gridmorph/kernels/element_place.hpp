@@ -126,9 +126,9 @@ KOKKOS_INLINE_FUNCTION FlatFacePlace nearest_on_face(Vec3 const* x, int n) {
 
 }  // namespace element
 
-/// False only when no place of the element is nearer to p than `limit`: its corners all lie beyond a plane that is so
-/// far away. Planes across the way from the point to the nearest corner, and across `towards` (both seen from p). 60
-/// flops per corner at most.
+/// Whether an element may have a nearer place: false only when no place of the element is nearer to p than `limit`: its
+/// corners all lie beyond a plane that is so far away. Planes across the way from the point to the nearest corner, and
+/// across `towards` (both seen from p). 60 flops per corner at most.
 KOKKOS_INLINE_FUNCTION bool may_be_nearer(ElementType type, ElementCorners const& c, Vec3 const& p, Vec3 const& towards,
                                           double limit) {
   constexpr double safe = 1 - 1e-6;

@@ -5,8 +5,7 @@
 //   determinant    prism, pyramid, quadrilateral: min J / max J over the corners (2x2x2), and over the corners and the
 //                  points half way between them (3x3x3), J the Jacobian determinant of the element's own map
 //     prism          x = linear in the triangle times linear along the columns; 9 points are enough, because J is
-//     linear
-//                    in the triangle at each height
+//                    linear in the triangle at each height
 //     pyramid        x = (1 - t) b(r, s) + t apex, b the bilinear base: J = (1 - t)^2 (b_r x b_s) . (apex - b). The
 //                    factor, which vanishes at the apex whatever the shape, is left out: 4 and 9 points of the base
 //   determinant    tetrahedron, triangle: J is constant, so the ratio says nothing. Instead the scaled Jacobian
@@ -19,7 +18,7 @@
 //   angles         between the edges in each corner of each face
 //   skewness       max((amax - a) / (180 - a), (a - amin) / a), a = 60 degrees in triangles, 90 in quadrilaterals
 //   relative       for each set of edges along one direction (edge_direction) the largest |u_p - u_q| over its edges
-//   pq, displacement   divided by their mean baseline length; the largest of them (u: displacement)
+//   displacement   pq, divided by their mean baseline length; the largest of them (u: displacement)
 //
 // In 2-D, J is taken along the unit normal of the plane. Edges shorter than collapsed_fraction of the longest one leave
 // no trace, and Jacobians that are round-off count as zero, as in cell_quality.hpp. Cost: 170 flops, 12 divisions, 5
@@ -127,7 +126,7 @@ KOKKOS_INLINE_FUNCTION void face_angles(ElementCorners const& c, int face, doubl
   }
 }
 
-/// The same for all faces of a tetrahedron: an angle for every two edges that meet, from the six edges alone.
+/// The range of angles in all faces of a tetrahedron: an angle for every two edges that meet, from the six edges alone.
 KOKKOS_INLINE_FUNCTION void tetrahedron_angles(ElementCorners const& c, EdgeLengths const& e, AngleRange& angles) {
   constexpr ElementType type = ElementType::tetrahedron;
   Vec3 edge[n_edges(type)];
@@ -345,7 +344,7 @@ KOKKOS_INLINE_FUNCTION double determinant(ElementCorners const& c, double sign, 
   return is_finite(m.volume) ? m.determinant_3x3x3 : -1;
 }
 
-/// Of a simplex, whose edges have a direction each: no sums, and one square root.
+/// The relative displacement of a simplex, whose edges have a direction each: no sums, and one square root.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION double simplex_relative_displacement(ElementCorners const& baseline,
                                                             ElementCorners const& morphed) {

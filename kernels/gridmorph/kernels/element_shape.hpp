@@ -27,7 +27,7 @@ enum class ElementType : std::uint8_t {
 };
 
 inline constexpr int n_element_types = 7;
-/// Of the elements that have tables here.
+/// The largest counts among the elements that have tables here.
 inline constexpr int max_corners = 8, max_edges = 12, max_faces = 6, max_face_corners = 4;
 
 /// Number of corners; 0 for a polyhedron, which has as many as it lists.

@@ -10,14 +10,14 @@
 //
 //   V = sum of V_f,   x_c = sum of V_f (3 f + c_0) / 4 / V
 //
-// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2, x_c = sum of V_f (2 f + c_0) / 3 /
-// V.
+// In 2-D sides are edges: f in their middle, S across them, V_f = S . (f - c_0) / 2,
+//
+//   x_c = sum of V_f (2 f + c_0) / 3 / V
 //
 //   non-orthogonality  of an inner face between elements at x and y: the angle between S and d = y - x
-//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f; h =
-//   the largest of 0.2 |d|
-//                      and |s . (p_k - f)| / |s|. On the boundary d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of
-//                      0.2 |d|
+//   face skewness      |s| / h, s = (f - x) - (S . (f - x) / S . d) d, where the line between the centres misses f;
+//                      h = the largest of 0.2 |d| and |s . (p_k - f)| / |s|. On the boundary
+//                      d = S (S . (f - x)) / |S|^2, and 0.4 |d| in place of 0.2 |d|
 //
 // These are the definitions by which OpenFOAM builds and checks meshes (its user guide, checkMesh; H. Jasak, "Error
 // analysis and estimation for the finite volume method", thesis, Imperial College 1996, section 3.2). Cost: 45 flops
@@ -49,6 +49,7 @@ KOKKOS_INLINE_FUNCTION FaceGeometry face_geometry(int n, CornerAt const& at, Vec
   Vec3 mean;
   for (int k = 0; k < n; ++k) mean += at(k);
   mean = (1.0 / n) * mean;
+  // A triangle is one triangle, not three around its mean.
   if (n == 3) {
     face.area = 0.5 * cross(at(1) - at(0), at(2) - at(0));
     face.centre = mean;
@@ -75,7 +76,7 @@ struct ElementCentre {
   double volume = 0;
 };
 
-/// Of an element: faces(f) is the geometry of face f < n_faces; solid: 3-D.
+/// The centre and volume of an element: faces(f) is the geometry of face f < n_faces; solid: 3-D.
 template <class Faces>
 KOKKOS_INLINE_FUNCTION ElementCentre element_centre(int n_faces, Faces const& faces, bool solid) {
   Vec3 mean;

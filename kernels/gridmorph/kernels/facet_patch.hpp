@@ -8,8 +8,7 @@
 //   quadrilateral  Coons patch of its four edges (Coons 1967): the bilinear patch plus the bends of each edge faded
 //                  linearly to the opposite one
 //   triangle       cubic Bezier triangle through its three edges whose middle control point reproduces quadratics (the
-//   PN
-//                  triangle of Vlachos, Peters, Boyd and Mitchell 2001)
+//                  PN triangle of Vlachos, Peters, Boyd and Mitchell 2001)
 // The normals at the corners are interpolated, (bi)linearly, to a normal field that is continuous across edges.
 //
 // Order. The distance of the facet from a smooth surface whose points and tangent planes it has at its corners is, as a

@@ -32,7 +32,7 @@ struct FacetFoot {
   Place place = Place::inside;
 };
 
-/// Borrows its tables; usable where they are.
+/// A surface of curved facets as kernels see it. Borrows its tables; usable where they are.
 struct FacetSurfaceView {
   FacetTreeView tree;
   Vec3 const* normals = nullptr;
@@ -99,7 +99,7 @@ struct FacetSurfaceView {
     return rate - dot(rate, foot.normal) * foot.normal;
   }
 
-  /// p put on the surface, which beyond its rims is continued by their tangent planes.
+  /// The point p put on the surface, which beyond its rims is continued by their tangent planes.
   KOKKOS_INLINE_FUNCTION Vec3 slide(FacetFoot const& foot, Vec3 const& p) const {
     return foot.place == FacetFoot::Place::rim ? p - dot(p - foot.point, foot.normal) * foot.normal : foot.point;
   }
@@ -143,7 +143,7 @@ struct FacetSurfaceView {
     walk.offer(p, at.s, at.n, FacetFoot::Place::inside);
   }
 
-  /// On to the place t of an edge (4 * facet + edge).
+  /// Goes on to the place t of an edge (4 * facet + edge).
   KOKKOS_INLINE_FUNCTION void cross(Walk& walk, int edge, double t) const {
     walk.from = walk.facet;
     walk.facet = edge / 4;
@@ -155,7 +155,7 @@ struct FacetSurfaceView {
     return fabs(det) > 1e-12 * norm(a) * norm(b) * norm(n);
   }
 
-  /// s + d n = p. Stops early well outside of the facet.
+  /// Newton's method for s + d n = p. Stops early well outside of the facet.
   KOKKOS_INLINE_FUNCTION static void newton(FacetPatch const& patch, Vec3 const& p, double& u, double& v,
                                             FacetPlace& at) {
     using std::fabs;

@@ -74,7 +74,8 @@ struct FacetTreeView {
   Facet const* facets = nullptr;
   FacetBox const* boxes = nullptr;  ///< [0] holds all facets
 
-  /// Of places equally near the one on the facet with the lowest number. Cost O(log facets) near the surface.
+  /// The place nearest to p; of places equally near the one on the facet with the lowest number. Cost O(log facets)
+  /// near the surface.
   KOKKOS_INLINE_FUNCTION FlatPlace nearest(Vec3 const& p) const {
     std::int32_t pending[max_depth];
     double pending_distance2[max_depth];

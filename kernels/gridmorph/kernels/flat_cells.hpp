@@ -39,7 +39,7 @@ struct ScaledCorners {
     double const la = norm(a), lb = norm(b), lc = norm(c);
     take(dot(cross(a, b), c), la * lb * lc, smaller(la, smaller(lb, lc)), 0x1p-46 * x * (la * lb + lb * lc + lc * la));
   }
-  /// In 2-D, J along the unit normal of the plane.
+  /// Takes a corner of a 2-D element, whose J is that along the unit normal of the plane.
   KOKKOS_INLINE_FUNCTION void take_in_plane(Vec3 const& a, Vec3 const& b, Vec3 const& normal) {
     double const la = norm(a), lb = norm(b);
     take(dot(cross(a, b), normal), la * lb, smaller(la, lb), 0x1p-46 * x * (la + lb));
@@ -88,7 +88,7 @@ KOKKOS_INLINE_FUNCTION double scaled_jacobian(ElementType type, ElementCorners c
   return 1;
 }
 
-/// Of a cell of blocks.
+/// How flat a cell of blocks was before and is now.
 KOKKOS_INLINE_FUNCTION FlatCell flat_cell(HexCell const& before, HexCell const& now, double handedness) {
   auto const scaled = [&](HexCell const& c) {
     ElementCorners const corners{

@@ -19,7 +19,7 @@ namespace gridmorph::kernels {
 
 constexpr Index amplitude_chunk = 256;  ///< boundary nodes
 
-/// Item (d, chunk): its part of a_d.
+/// The part of a_d that chunk c has, for each item (d, c).
 template <class MemorySpace>
 struct PartialAmplitudes {
   Kokkos::View<Vec3 const*, MemorySpace> gauge;  ///< (n_modes, n_boundary)
@@ -37,7 +37,7 @@ struct PartialAmplitudes {
   }
 };
 
-/// Item d: a_d of its parts.
+/// Sums the amplitude a_d of item d from its parts.
 struct SumAmplitudes {
   double const* partial;
   Index n_chunks;
@@ -85,14 +85,15 @@ struct SlidingShift {
   Vec3 position;  ///< of the node in the baseline
 };
 
-/// One of the nodes at such a point.
+/// One of the nodes at a point that slides.
 struct SlidingNode {
   Index node;
   std::int32_t slide;    ///< which point
   std::int32_t to_node;  ///< frame of the slot -> frame of this node, -1: the same
 };
 
-/// Rate: `out` has rates, u changes by `rate` and the shift by that of `rate_shift`.
+/// Adds the shifts of nodes that slide. Rate: `out` has rates, u changes by `rate` and the shift by that of
+/// `rate_shift`.
 template <class MemorySpace, bool Rate>
 struct AddSlidingShifts {
   Kokkos::View<SlidingNode const*, MemorySpace> nodes;

@@ -60,7 +60,7 @@ void interpolate(char const* label, Exec const& exec, InterpolationTable<typenam
   interpolate(label, exec, rows, 0, rows.size(), source, value);
 }
 
-/// In place, one launch per layer.
+/// Interpolates in place, layer after layer, one launch per layer.
 template <class Exec, class Value>
 void interpolate_layers(char const* label, Exec const& exec, LayerTable<typename Exec::memory_space> const& layers,
                         Value* value) {

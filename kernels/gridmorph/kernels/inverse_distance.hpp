@@ -41,7 +41,7 @@ struct AffineMotion {
   }
 };
 
-/// What a group at `centre` says at x.
+/// The value at x of the motion of a group at `centre`.
 KOKKOS_INLINE_FUNCTION Vec3 value_at(AffineMotion const& motion, Vec3 const& centre, Vec3 const& x) {
   return motion.u + motion.gradient * (x - centre);
 }
@@ -90,8 +90,8 @@ struct LatticeFromGroups {
   }
 };
 
-/// given: what the boundary nodes say, in the order of the plan. group: one per group, workspace. value: one per
-/// lattice node.
+/// Evaluates the field on its lattice. given: what the boundary nodes say, in the order of the plan. group: one per
+/// group, workspace. value: one per lattice node.
 template <class Exec, class Value>
 void spread_to_lattice(Exec const& exec, InverseDistanceTable<typename Exec::memory_space> const& table,
                        Value const* given, Value* group, Vec3* value) {

@@ -42,7 +42,8 @@ enum class JacobianSign : std::uint8_t {
 };
 
 inline constexpr int max_halvings = 18;
-/// Below this share of the product of the longest edges, arithmetic alone may decide about a sign: 2^-44, some 250 eps.
+/// The share that arithmetic has in a sign: below this share of the product of the longest edges, arithmetic alone may
+/// decide about a sign: 2^-44, some 250 eps.
 inline constexpr double sign_share = 0x1p-44;
 
 /// Bezier coefficients of degree 2 in three directions: of[i][j][k].
@@ -84,8 +85,8 @@ struct BezierCube {
   }
 };
 
-/// arithmetic: what rounding may do to a coefficient; tolerance >= arithmetic: what is zero as far as coordinates can
-/// tell.
+/// The sign of J by its Bezier coefficients. arithmetic: what rounding may do to a coefficient; tolerance >=
+/// arithmetic: what is zero as far as coordinates can tell.
 KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arithmetic, double tolerance) {
   struct Piece {
     BezierCube b;
@@ -112,8 +113,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign sign_of(BezierCube const& whole, double arit
   return sign;
 }
 
-/// Of a plane of constant i: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at the corners,
-/// and the squares of the longest.
+/// Normals in a plane of constant i: edges along j at k = 0, 1 and along k at j = 0, 1, their cross products at the
+/// corners, and the squares of the longest.
 template <class T>
 struct PlaneNormals {
   LaneVec3<T> j0, j1, k0, k1;
@@ -194,7 +195,7 @@ KOKKOS_FORCEINLINE_FUNCTION T longest_square(FourVectors<T> const& a) {
   return square_extremes(a).max;
 }
 
-/// Of one cell; handedness: +1 or -1.
+/// The sign of J in one cell; handedness: +1 or -1.
 KOKKOS_INLINE_FUNCTION JacobianSign jacobian_sign(HexCell const& cell, double handedness) {
   auto const node = [&](int i, int j, int k) {
     Vec3 const& p = cell.corner[i + 2 * j + 4 * k];
@@ -231,10 +232,10 @@ KOKKOS_FORCEINLINE_FUNCTION T sum_norm(LaneVec3<T> const& a) {
   return (absolute(a.x) + absolute(a.y)) + absolute(a.z);
 }
 
-/// With coordinates from -1 to 1, 8 x = ... + A xi + B eta + C zeta + P xi eta + Q xi zeta + R eta zeta + S xi eta
-/// zeta. Then 64 J is A . (B x C) and monomials, none of them larger anywhere than its coefficient: those of xi, eta,
-/// zeta as they are, others no larger than the norms of their vectors allow. Loose where cells are far from
-/// parallelepipeds; 200 flops.
+/// A lower bound of J in cells. With coordinates from -1 to 1, 8 x = ... + A xi + B eta + C zeta + P xi eta + Q xi zeta
+/// + R eta zeta + S xi eta zeta. Then 64 J is A . (B x C) and monomials, none of them larger anywhere than its
+/// coefficient: those of xi, eta, zeta as they are, others no larger than the norms of their vectors allow. Loose where
+/// cells are far from parallelepipeds; 200 flops.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION JacobianFloor<T> jacobian_floor(CellEdges<T> const& e, T const& handedness) {
   LaneVec3<T> const i0 = e.i.v00 + e.i.v10, i1 = e.i.v01 + e.i.v11, d0 = e.i.v10 - e.i.v00, d1 = e.i.v11 - e.i.v01;
@@ -254,7 +255,7 @@ KOKKOS_FORCEINLINE_FUNCTION JacobianFloor<T> jacobian_floor(CellEdges<T> const& 
   return {handedness * dot(a, bc) - ((first + with_s) + higher), broadcast<T>(16 * sign_share) * edges};
 }
 
-/// 0 where all coefficients of cells are positive, 1 where one is not or may be round-off.
+/// A mark for cells: 0 where all coefficients of cells are positive, 1 where one is not or may be round-off.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T doubtful_coefficients(CellEdges<T> const& e, T const& handedness) {
   PlaneNormals<T> const low({e.j.v00, e.j.v01, e.k.v00, e.k.v01}), high({e.j.v10, e.j.v11, e.k.v10, e.k.v11});
@@ -288,7 +289,7 @@ KOKKOS_INLINE_FUNCTION void row_jacobian_signs(CellRow const& row, double* mark)
 
 namespace element {
 
-/// J of a prism along column k, per half of the triangle's edges at corner k.
+/// The sign of J of a prism, by J along column k, per half of the triangle's edges at corner k.
 KOKKOS_INLINE_FUNCTION JacobianSign prism_sign(ElementCorners const& c, double sign, double arithmetic, double zero) {
   Vec3 const r0 = c.at[1] - c.at[0], s0 = c.at[2] - c.at[0], r1 = c.at[4] - c.at[3], s1 = c.at[5] - c.at[3];
   Vec3 const n[3] = {sign * cross(r0, s0), 0.5 * sign * (cross(r0, s1) + cross(r1, s0)), sign * cross(r1, s1)};
@@ -323,8 +324,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign pyramid_sign(ElementCorners const& c, double
   return sign_of(b, arithmetic, zero);
 }
 
-/// Of an element of one type that is no hexahedron. In 2-D, corners decide: J is linear along each edge of a
-/// quadrilateral.
+/// The sign of J in an element of one type that is no hexahedron. In 2-D, corners decide: J is linear along each edge
+/// of a quadrilateral.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION JacobianSign sign_of_type(ElementCorners const& c, double sign, Vec3 const& plane_normal) {
   EdgeLengths const e = edge_lengths<type>(c);
@@ -354,7 +355,7 @@ KOKKOS_INLINE_FUNCTION JacobianSign sign_of_type(ElementCorners const& c, double
 
 }  // namespace element
 
-/// Of an element that is no polyhedron; sign and plane_normal as in element_measures().
+/// The sign of J in an element that is no polyhedron; sign and plane_normal as in element_measures().
 KOKKOS_INLINE_FUNCTION JacobianSign jacobian_sign(ElementType type, ElementCorners const& c, double sign,
                                                   Vec3 const& plane_normal) {
   switch (type) {

@@ -45,7 +45,7 @@ struct SurfaceOfImage {
     return out;
   }
 };
-/// What constrained_gradient() asks where there is one surface.
+/// The gradient of u where there is one surface, as constrained_gradient() asks for it.
 KOKKOS_INLINE_FUNCTION Vec3 slip_gradient(SurfaceOfImage const& s, Vec3 const&, double own, Vec3 const& u,
                                           Vec3 const& g) {
   return s.back(slip_gradient(s.surface, s.place, own, s.there(u), s.there(g)));
@@ -58,13 +58,13 @@ struct JointSlipTable {
   Kokkos::View<Mat3 const*, MemorySpace> turns;
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
 
-  /// Of entry k.
+  /// The number of surfaces of entry k.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION int count(Index k) const { return int(first(k + 1) - first(k)); }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION SurfaceOfImage surface_of(Index k, int m, Field<double const> const& x) const {
     Index const at = first(k) + m;
     return {surfaces(surface(at)), x[place(at)], turn(at) < 0 ? nullptr : &turns(turn(at))};
   }
-  /// u as the surfaces of entry k let it be, and with `Rate` its rate of change.
+  /// Makes u what the surfaces of entry k let it be, and with `Rate` its rate of change.
   template <bool Rate>
   KOKKOS_INLINE_FUNCTION void constrain(Index k, Field<double const> const& x, Vec3& u, Vec3& rate) const {
     auto const surface_at = [&](int m) { return surface_of(k, m, x); };
@@ -109,7 +109,7 @@ struct PutBackGiven {
     if constexpr (Rate) kept_rate[s] = rate;
   }
 };
-/// Its transpose, on gradients where they are: of what is kept, then of what is given.
+/// Transpose of PutBackGiven, on gradients where they are: of what is kept, then of what is given.
 template <class MemorySpace>
 struct PutBackGivenBack {
   JointSlipTable<MemorySpace> table;
@@ -161,7 +161,7 @@ struct HoldJointNodes {
     }
   }
 };
-/// Owners' displacements that it is about to start from, kept for its transpose.
+/// Keeps the owners' displacements that HoldJointNodes is about to start from, for its transpose.
 template <class MemorySpace>
 struct KeepJointNodes {
   JointNodes<MemorySpace> nodes;
@@ -170,7 +170,7 @@ struct KeepJointNodes {
   [[nodiscard]] Index size() const { return Index(nodes.owner.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { kept[k] = u[nodes.owner(k)]; }
 };
-/// Its transpose: all gradients go to the owner.
+/// Transpose of HoldJointNodes: all gradients go to the owner.
 template <class MemorySpace>
 struct HoldJointNodesBack {
   JointNodes<MemorySpace> nodes;

@@ -7,11 +7,12 @@
 
 namespace gridmorph::kernels {
 
-/// With h(f) the height of the line's first node above a face after a share f of the turn, over that before: the
-/// largest f, 1 at most, with h(f) >= min(k, h(0)) for all faces, h taken as linear. k is 1/2 where the line stands
-/// half way between a face and its normal, and 0.99 where it leans to the face. (Heights may grow: holding them back as
-/// well inverts cells further up a wing's trailing edge.) line: unit, on the side to which the normals of the faces
-/// look. before(k), after(k): normal of face k, as long as the face is large, V each. Cost: about 60 flops per face.
+/// The share of a turn that keeps heights. With h(f) the height of the line's first node above a face after a share f
+/// of the turn, over that before: the largest f, 1 at most, with h(f) >= min(k, h(0)) for all faces, h taken as linear.
+/// k is 1/2 where the line stands half way between a face and its normal, and 0.99 where it leans to the face. (Heights
+/// may grow: holding them back as well inverts cells further up a wing's trailing edge.) line: unit, on the side to
+/// which the normals of the faces look. before(k), after(k): normal of face k, as long as the face is large, V each.
+/// Cost: about 60 flops per face.
 template <class V, class Before, class After>
 KOKKOS_INLINE_FUNCTION auto share_that_keeps_height(Vec3 const& line, V const& turn, Index n_faces,
                                                     Before const& before, After const& after) {
@@ -37,9 +38,9 @@ KOKKOS_INLINE_FUNCTION auto share_that_keeps_height(Vec3 const& line, V const& t
   return share;
 }
 
-/// How much a turn whose |r|^2 is `square` is held back so: wholly up to 120 degrees, not at all beyond 150, where h(f)
-/// is far from linear, and a share of the turn that is to keep the last per cent of a height may leave the line behind
-/// by a right angle.
+/// How much a turn whose |r|^2 is `square` is held back for the sake of heights: wholly up to 120 degrees, not at all
+/// beyond 150, where h(f) is far from linear, and a share of the turn that is to keep the last per cent of a height may
+/// leave the line behind by a right angle.
 inline constexpr double never_held_back = 0.58879070648;  // tan(37.5 degrees)^2
 template <class Scalar>
 KOKKOS_INLINE_FUNCTION Scalar held_back(Scalar const& square) {

@@ -119,7 +119,7 @@ KOKKOS_FORCEINLINE_FUNCTION LaneVec3<T> cross(LaneVec3<T> const& a, LaneVec3<T> 
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Smallest and largest of some values.
+/// The smallest and the largest of some values.
 template <class T>
 struct Extremes {
   T min, max;

@@ -14,7 +14,7 @@ void launch(char const* label, Exec const& exec, Index begin, Index end, Kernel 
     Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, begin, end), kernel);
 }
 
-/// The same for all items of a kernel that counts them itself.
+/// Enqueues all items of a kernel that counts them itself.
 template <class Exec, class Kernel>
 void launch(char const* label, Exec const& exec, Kernel const& kernel) {
   launch(label, exec, 0, kernel.size(), kernel);

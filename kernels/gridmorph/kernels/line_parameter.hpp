@@ -165,7 +165,7 @@ struct LineParameters {
       walk(step);
   }
 
-  /// Arc lengths to fractions.
+  /// Turns arc lengths into fractions of the whole line.
   template <class Block>
   KOKKOS_INLINE_FUNCTION void divide(Tile const& tile, double const* sum) const {
     double per_length[Block::lines] = {};
@@ -230,7 +230,7 @@ struct LineParameters {
     }
   }
 };
-/// t of all lines of the tubes listed, to where `targets` says.
+/// Finds t of all lines of the tubes listed and puts it where `targets` says.
 template <class Exec>
 void line_parameters(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                      TileList<Tube, typename Exec::memory_space> const& tubes,

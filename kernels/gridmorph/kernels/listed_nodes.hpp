@@ -11,7 +11,7 @@
 
 namespace gridmorph::kernels {
 
-/// Nodes that nothing reaches stay.
+/// Makes nodes that nothing reaches stay.
 struct RestNodes {
   Vec3* u;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] = Vec3{}; }

@@ -51,7 +51,7 @@ struct CopyNodes {
     }
   }
 };
-/// Given displacements, each to its slot: u(slots(n)) = given(n).
+/// Copies given displacements, each to its slot: u(slots(n)) = given(n).
 template <class MemorySpace>
 struct ScatterBoundary {
   Kokkos::View<Index const*, MemorySpace> slots;
@@ -68,8 +68,8 @@ void scatter_boundary(Exec const& exec, Kokkos::View<Index const*, typename Exec
   launch("gridmorph::boundary", exec, ScatterBoundary<typename Exec::memory_space>{slots, given, u});
 }
 
-/// Between arrays of the skeleton and of chains; `source` and `destination` may be the same where no copy reads what
-/// another writes.
+/// Copies values of nodes between arrays of the skeleton and of chains; `source` and `destination` may be the same
+/// where no copy reads what another writes.
 template <class Exec>
 void copy_nodes(Exec const& exec, char const* label, TileList<NodeCopy, typename Exec::memory_space> const& copies,
                 Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
@@ -79,7 +79,7 @@ void copy_nodes(Exec const& exec, char const* label, TileList<NodeCopy, typename
                                                                       source, destination});
 }
 
-/// To the nodes of a mesh. With `Move`, they get baseline + matrix * source.
+/// Copies values of the skeleton to the nodes of a mesh. With `Move`, they get baseline + matrix * source.
 template <bool Move, class Exec>
 void write_skeleton_nodes(Exec const& exec, TileList<NodeCopy, typename Exec::memory_space> const& copies,
                           Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,

@@ -31,7 +31,7 @@ struct ScatterPart {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { to[list(k)] = from[k]; }
 };
 
-/// The same to a Field.
+/// to(list(k)) = from(k), where `to` is a Field.
 template <class MemorySpace>
 struct SetPart {
   Kokkos::View<std::int32_t const*, MemorySpace> list;

@@ -6,15 +6,13 @@
 //   volume         sum of the pyramids' volumes
 //   inverted       a pyramid has negative volume: S . (f - x_c) < 0. (OpenFOAM's checkMesh: "face pyramids")
 //   determinant    both: the smallest S . (f - x_c) / (A |f - x_c|) over the faces, A the sum of the areas of a face's
-//   triangles: 1 where faces
-//                  are flat and across the lines from the centre, whatever the lengths, as determinants of hexahedra
-//                  are
+//                  triangles: 1 where faces are flat and across the lines from the centre, whatever the lengths, as
+//                  determinants of hexahedra are
 //   aspect ratio   longest / shortest edge
 //   angles         between the edges in each corner of each face, above 180 degrees where a face has a dent
 //   skewness       (a - amin) / a, a = 180 - 360 / n degrees in faces with n corners; of triangles and quadrilaterals
-//   the larger of that and
-//                  (amax - a) / (180 - a), of others of that and (amax - 180) / 180: nodes of finer neighbours amid an
-//                  edge are no fault of a face. Not above 1
+//                  the larger of that and (amax - a) / (180 - a), of others of that and (amax - 180) / 180: nodes of
+//                  finer neighbours amid an edge are no fault of a face. Not above 1
 //   relative       largest |u_p - u_q| over the edges pq / their mean baseline length
 //   displacement
 //
@@ -36,7 +34,7 @@ struct Pyramids {
   double volume = 0;
 };
 
-/// p: n_faces(), n_corners(face), at(face, corner).
+/// The geometry of a face of p, which has n_faces(), n_corners(face), at(face, corner).
 template <class Points>
 KOKKOS_INLINE_FUNCTION FaceGeometry face_of(Points const& p, int face) {
   return face_geometry(
@@ -49,7 +47,7 @@ KOKKOS_INLINE_FUNCTION ElementCentre centre_of(Points const& p) {
       p.n_faces(), [&](int f) { return face_of(p, f); }, true);
 }
 
-/// sign: -1 where faces point inwards.
+/// The pyramids between the centre and the faces. sign: -1 where faces point inwards.
 template <class Points>
 KOKKOS_INLINE_FUNCTION Pyramids pyramids(Points const& p, double sign) {
   ElementCentre const centre = centre_of(p);
@@ -144,7 +142,7 @@ KOKKOS_INLINE_FUNCTION double polyhedron_determinant(Points const& p, double sig
   return is_finite(j.volume) ? larger(-1.0, smaller(1.0, j.share)) : -1.0;
 }
 
-/// Whether all pyramids have volume.
+/// The sign of all pyramids together: whether they have volume.
 template <class Points>
 KOKKOS_INLINE_FUNCTION JacobianSign polyhedron_sign(Points const& p, double sign) {
   polyhedron::Pyramids const j = polyhedron::pyramids(p, sign);
@@ -152,7 +150,8 @@ KOKKOS_INLINE_FUNCTION JacobianSign polyhedron_sign(Points const& p, double sign
   return j.least > 0 ? JacobianSign::positive : JacobianSign::zero;
 }
 
-/// Of an element that moved from `baseline` to `morphed`; `unbounded` where a corner is not finite.
+/// The relative displacement of a polyhedron that moved from `baseline` to `morphed`; `unbounded` where a corner is not
+/// finite.
 template <class From, class To>
 KOKKOS_INLINE_FUNCTION double polyhedron_relative_displacement(From const& baseline, To const& morphed) {
   double worst = 0, length = 0;

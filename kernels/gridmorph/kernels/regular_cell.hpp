@@ -5,8 +5,7 @@
 //   normals       N = x_eta x x_zeta on a plane of constant xi is bilinear in eta and zeta: cross products at the 4
 //                 corners only, the other 5 of the 9 points by sums. J = x_xi . N.
 //   points        bilinear vectors are kept as sums over corners: 1 x the value at corners, 2 x at edge mids, 4 x at
-//   the
-//                 centre. Powers of two scale without rounding, so extremes are scaled once and not point by point.
+//                 the centre. Powers of two scale without rounding, so extremes are scaled once and not point by point.
 //   volume        in these sums the weights 1, 4, 1 of Simpson's rule become 1 everywhere: the sum of all 27 / 216.
 //   angles        dot products of unit edge vectors; arc cosines only of the largest and the smallest per cell.
 //
@@ -65,14 +64,16 @@ KOKKOS_FORCEINLINE_FUNCTION Extremes<T> square_extremes(CellEdges<T> const& e) {
   return merged(merged(square_extremes(e.i), square_extremes(e.j)), square_extremes(e.k));
 }
 
-/// 0 for a regular cell, from the extremes of its squared edge lengths and a result that all corners enter.
+/// A mark that is 0 for a regular cell, from the extremes of its squared edge lengths and a result that all corners
+/// enter.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& result) {
   T const limit = collapsed_fraction * collapsed_fraction * squares.max;
   return (squares.min > limit ? broadcast<T>(0) : broadcast<T>(1)) + (result - result);
 }
 
-/// The same for a cell's volume and its determinant over 27 points, in which the corners are.
+/// A mark that is 0 for a regular cell, from the extremes of its squared edge lengths, its volume and its determinant
+/// over 27 points, among which the corners are.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T irregularity(Extremes<T> const& squares, T const& volume, T const& determinant) {
   T const cubed = squares.max * squares.max * squares.max;
@@ -118,7 +119,7 @@ KOKKOS_FORCEINLINE_FUNCTION PlaneJacobians<T> plane_jacobians(NineVectors<T> con
           ((j00 + j10) + (j01 + j11)) + ((m00 + m10) + (m01 + m11)) + centre};
 }
 
-/// JacobianRange of regular cells.
+/// The JacobianRange of regular cells.
 template <class T>
 struct CellJacobians {
   Extremes<T> eight, all;  ///< over the 8 corners, over the 27 points
@@ -180,7 +181,7 @@ struct PlaneShape {
   Extremes<T> cosines, squares;
 };
 
-/// From the edges of the plane.
+/// The shape of a plane, from its edges.
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION PlaneShape<T> plane_shape(LaneVec3<T> const& j0, LaneVec3<T> const& j1,
                                                       LaneVec3<T> const& k0, LaneVec3<T> const& k1) {

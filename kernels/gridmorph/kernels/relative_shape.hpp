@@ -58,7 +58,7 @@ struct CornerChange {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double d_after(Vec3 const& v) const { return d + dot(v, volume_slope); }
 };
 
-/// `share`: a = sum of share[i] b_i.
+/// How N and d of a corner change where edge i changes by share[i] v: a = sum of share[i] b_i.
 KOKKOS_INLINE_FUNCTION CornerChange corner_change(BaselineCorner const& baseline, Vec3 const (&edge)[3],
                                                   double const (&share)[3]) {
   CornerChange c;
@@ -88,7 +88,7 @@ struct SmoothedVolume {
   }
 };
 
-/// f; infinite where delta is zero and d not positive.
+/// The measure f; infinite where delta is zero and d not positive.
 KOKKOS_INLINE_FUNCTION double relative_shape(double n, double d, double delta) {
   double const h = SmoothedVolume(d, delta).value;
   return h > 0 ? n * n * n / (27 * h * h) : HUGE_VAL;

@@ -5,8 +5,7 @@
 //             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of
 //             one side
 //   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn
-//   some nodes of a body
-//             that is deformed besides turn by 179 degrees and some by 181
+//             some nodes of a body that is deformed besides turn by 179 degrees and some by 181
 //             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of
 //             its height above each of the faces, as far as it would keep it without a turn; as far as free where the
 //             wall turns beyond 150 degrees
@@ -15,8 +14,7 @@
 //           alpha at the end: onto a slip surface the smallest rotation that takes raw N to N', N its normal there
 //           before and after; onto a wall that a rule moves its own rotation after raw's inverse
 //   outer   turn * raw, where lines along the wall run between two slip surfaces turn * (Align(raw N -> N') raw), N
-//   mixed by span
-//           fraction: the outer edge turns about the spanwise direction alone
+//           mixed by span fraction: the outer edge turns about the spanwise direction alone
 //
 // From raw on all keeps the way round that raw goes (turn_on()).
 //
@@ -125,7 +123,7 @@ struct RootArms {
   }
 };
 
-/// free of every root.
+/// The rotation `free` of every root.
 template <class MemorySpace, class V>
 struct FreeRootTurn {
   RootTable<MemorySpace> table;
@@ -170,7 +168,7 @@ struct FreeRootTurn {
   }
 };
 
-/// raw of every root.
+/// The rotation `raw` of every root.
 template <class MemorySpace, class V>
 struct RawRootTurn {
   RootTable<MemorySpace> table;
@@ -200,7 +198,7 @@ struct RawRootTurn {
   }
 };
 
-/// Per end wall: alpha, and its normal before and after where it is a slip surface.
+/// What is kept of each end wall: alpha, and its normal before and after where it is a slip surface.
 template <class Vectors>
 struct EndWallVectors {
   Vectors all;  ///< 3 per end wall
@@ -209,7 +207,7 @@ struct EndWallVectors {
   KOKKOS_INLINE_FUNCTION auto moved(Index e) const { return all[3 * e + 2]; }
 };
 
-/// alpha of every end wall.
+/// The rotation alpha of every end wall.
 template <class MemorySpace, class V>
 struct EndWallTurn {
   RootTable<MemorySpace> table;
@@ -228,7 +226,7 @@ struct EndWallTurn {
   struct Found {
     V alpha{}, before{}, after{};
   };
-  /// Of displacements u and rotations raw.
+  /// What end wall e is found to do by displacements u and rotations raw.
   template <class Displacements, class Rotations>
   KOKKOS_INLINE_FUNCTION Found at(Index e, Displacements const& u, Rotations const& raw) const {
     EndWall const& end = table.end_walls(e);
@@ -244,7 +242,7 @@ struct EndWallTurn {
   }
 
  private:
-  /// Of the surface where the displacement takes the end; frame of the end's slot.
+  /// The normal of the surface where the displacement takes the end, in the frame of the end's slot.
   KOKKOS_INLINE_FUNCTION V normal(EndWall const& end, V const& displacement) const {
     V const there = table.in_frame(end.to_zone, displacement);
     if constexpr (has_rate<V>) {
@@ -271,7 +269,7 @@ struct EndWallTurn {
   }
 };
 
-/// inner of every root, to its slot, and outer.
+/// The rotations `inner` of every root, to its slot, and `outer`.
 template <class MemorySpace, class V>
 struct NearFieldTurn {
   RootTable<MemorySpace> table;
@@ -295,7 +293,8 @@ struct NearFieldTurn {
   }
 
  private:
-  /// Between two slip surfaces about the spanwise direction alone, otherwise the turn itself.
+  /// The turn of the section: between two slip surfaces that about the spanwise direction alone, otherwise the turn
+  /// itself.
   KOKKOS_INLINE_FUNCTION V section(RootEnds const& ends, V const& own, V const& turned) const {
     if (!(ends.fraction >= 0)) return turned;
     V before{}, after{};

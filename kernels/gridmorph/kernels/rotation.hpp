@@ -48,7 +48,7 @@ KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after, Vec3 cons
   return (1 / (real + sqrt(real * real + square))) * c;
 }
 
-/// About some axis where they are opposite.
+/// The smallest rotation that takes direction `before` to `after`; about some axis across them where they are opposite.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turn_between(V const& before, V const& after) {
   Vec3 const v = value_of(before);
@@ -66,7 +66,7 @@ KOKKOS_INLINE_FUNCTION Scalar quarter_tangent(Scalar const& sine, Scalar const& 
   return whole > 0 ? sine / whole : Scalar{1};
 }
 
-/// R y - y: exactly zero where r is.
+/// What the rotation by r adds to y, R y - y: exactly zero where r is.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turned_by(V const& r, V const& y) {
   using Scalar = std::decay_t<decltype(dot(r, r))>;
@@ -82,7 +82,7 @@ KOKKOS_INLINE_FUNCTION Mat3 matrix_of_map(Map const& map) {
   return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
 
-/// The same rotation the other way round.
+/// The rotation r the other way round.
 template <class V>
 KOKKOS_INLINE_FUNCTION V other_way(V const& r) {
   return (1 / dot(r, r)) * -r;
@@ -126,7 +126,7 @@ struct TurnProduct {
     imaginary = (2 * p) * next + (2 * q) * first + 4 * cross(next, first);
     size = (Scalar{1} + a) * (Scalar{1} + b);
   }
-  /// The other way round.
+  /// Turns the product the other way round, which is the same rotation.
   KOKKOS_INLINE_FUNCTION void turn_round() {
     real = -real;
     imaginary = -imaginary;
@@ -134,7 +134,7 @@ struct TurnProduct {
   KOKKOS_INLINE_FUNCTION V rotation() const { return (1 / (size + real)) * imaginary; }
 };
 
-/// First one rotation, then the other, the shorter way round; zero where both are.
+/// The rotation that is first one, then the other, the shorter way round; zero where both are.
 template <class V>
 KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
   TurnProduct<V> product(first, next);
@@ -161,14 +161,14 @@ struct Quaternion {
   V imaginary{};
   Scalar less{};
 
-  /// f of the way from b to a.
+  /// The quaternion at the share f of the way from b to a.
   KOKKOS_FORCEINLINE_FUNCTION static Quaternion between(Quaternion const& b, Quaternion const& a, double f) {
     return {b.imaginary + f * (a.imaginary - b.imaginary), b.less + f * (a.less - b.less)};
   }
   KOKKOS_FORCEINLINE_FUNCTION static Quaternion share(Quaternion const& a, double f) {
     return {f * a.imaginary, f * a.less};
   }
-  /// R y - y.
+  /// What the rotation R adds to y: R y - y.
   KOKKOS_FORCEINLINE_FUNCTION V turned(V const& y) const {
     Scalar const real = Scalar{1} - less;
     V const across = cross(imaginary, y);

@@ -13,7 +13,7 @@
 
 namespace gridmorph::kernels {
 
-/// Of a quaternion, and of the stretch of a line end (turned_line.hpp).
+/// The gradient of a quaternion, and of the stretch of a line end (turned_line.hpp).
 struct TurnedGradient {
   Vec3 imaginary;
   double less = 0, stretch = 0;
@@ -25,7 +25,7 @@ struct TurnedGradient {
   }
 };
 
-/// Of q.turned(y), whose gradient is g, without the factor k; `along`: g . q.turned(y).
+/// The gradient of q from that of q.turned(y), g, without a factor, which becomes `scale`; `along`: g . q.turned(y).
 KOKKOS_FORCEINLINE_FUNCTION TurnedGradient turned_gradient(Quaternion<Vec3> const& q, Vec3 const& y, Vec3 const& g,
                                                            double& scale, double& along) {
   Vec3 const& v = q.imaginary;
@@ -42,7 +42,7 @@ KOKKOS_INLINE_FUNCTION TurnedGradient turned_gradient(Quaternion<Vec3> const& q,
   return {scale * of.imaginary, scale * of.less, 0};
 }
 
-/// Of quaternion_of(r).
+/// The gradient of r from that of quaternion_of(r), g.
 KOKKOS_INLINE_FUNCTION Vec3 rotation_gradient(Vec3 const& r, TurnedGradient const& g) {
   double const square = dot(r, r), share = 2 / (1 + square);
   double const of_share = dot(g.imaginary, r) + g.less * square;
@@ -50,7 +50,7 @@ KOKKOS_INLINE_FUNCTION Vec3 rotation_gradient(Vec3 const& r, TurnedGradient cons
   return share * g.imaginary + (2 * of_square) * r;
 }
 
-/// Of turned_by(r, y), whose gradient is g.
+/// The gradient of r from that of turned_by(r, y), g.
 KOKKOS_INLINE_FUNCTION Vec3 turned_by_gradient(Vec3 const& r, Vec3 const& y, Vec3 const& g) {
   return rotation_gradient(r, turned_gradient(quaternion_of(r), y, g));
 }

@@ -54,6 +54,7 @@ struct RowCorrection {
       add_side(2, weight, range, v);
     }
     if (known & 8u) add_side(3, B, range, v);
+    // Sides have what is beyond their edges, so that edges come in once, by the products of both shares.
     for (int e = 0; e < 4; ++e) {
       if (!((known >> (4 + e)) & 1u)) continue;
       bool const upper_a = (e & 1) != 0, upper_b = (e & 2) != 0;
@@ -108,7 +109,7 @@ struct RowCorrection {
     for (int w = 0; w < n; ++w, at += Index(chain.n_s) * step) add_node(at, w, weight, guess, v);
   }
 
-  /// One line for the whole row.
+  /// Adds the correction of a side where the whole row has one line of it.
   KOKKOS_INLINE_FUNCTION void add_line(Index at, double const* weight, Range const& range, VectorRow<width>& v) const {
     int const last = chain.n_s - 1;
     int const lower = table.interval(at, last, range.least, s);

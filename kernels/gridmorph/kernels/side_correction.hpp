@@ -107,6 +107,7 @@ struct SideTable {
       if (chain.side_matters(3)) sum += B * side(3, a);
       return sum;
     }
+    // Sides have what is beyond their edges, so that edges come in once, by the products of both shares.
     double const A = across(chain, 0, a, b, t_line), B = across(chain, 1, a, b, t_line);
     int const last_a = chain.n_a - 1, last_b = chain.n_b - 1;
     Vec3 sum;

@@ -25,8 +25,8 @@ KOKKOS_INLINE_FUNCTION bool side_node_is_known(SideTable<MemorySpace> const& sid
   return (known >> bit) & 1u;
 }
 
-/// c = u - interpolant at the known nodes of a side line, 0 at the others. c comes in as the displacements of the known
-/// nodes, in the chain's frame.
+/// The residual c = u - interpolant at the known nodes of a side line, 0 at the others. c comes in as the displacements
+/// of the known nodes, in the chain's frame.
 template <class MemorySpace>
 struct SideResidual {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -59,8 +59,8 @@ struct SideResidual {
   }
 };
 
-/// Unknown stretches of the four edges along s: linear in t between the nearest known nodes, constant to an open end.
-/// One item per edge; items = 4 * corrected chains, chain numbers in `corrected`.
+/// Fills unknown stretches of the four edges along s: linear in t between the nearest known nodes, constant to an open
+/// end. One item per edge; items = 4 * corrected chains, chain numbers in `corrected`.
 template <class MemorySpace>
 struct EdgeFill {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -97,8 +97,8 @@ struct EdgeFill {
   }
 };
 
-/// Unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then c' = c
-/// - edges where the correction asks for that. One item per side line; nothing is done on edges.
+/// Fills unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then
+/// c' = c - edges where the correction asks for that. One item per side line; nothing is done on edges.
 template <class MemorySpace>
 struct SideFill {
   Kokkos::View<Chain const*, MemorySpace> chains;

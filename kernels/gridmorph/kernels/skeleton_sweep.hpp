@@ -89,7 +89,7 @@ struct SweepSkeleton {
     }
   }
 };
-/// u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line
+/// Finds u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line
 /// parameters.
 template <bool Add, class Exec>
 void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::memory_space> const& sweeps,

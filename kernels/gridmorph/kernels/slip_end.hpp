@@ -51,8 +51,8 @@ struct ClearEnds {
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { values.set(n, {}); }
 };
 
-/// d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative where u changes by `rate`
-/// per unit of time: constrain_to_all() of slip_edge.hpp.
+/// The values of slip ends, d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative
+/// where u changes by `rate` per unit of time: constrain_to_all() of slip_edge.hpp.
 template <class MemorySpace, bool Rate>
 struct SlipEndValues {
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
@@ -68,7 +68,7 @@ struct SlipEndValues {
     values.set(ends(item).value, change(item, u[slot], Rate ? rate[slot] : Vec3{}));
   }
 
-  /// d of one end whose slot is displaced by u; with `Rate` its derivative.
+  /// The value d of one end whose slot is displaced by u; with `Rate` its derivative.
   KOKKOS_INLINE_FUNCTION Vec3 change(Index item, Vec3 const& u_slot, Vec3 const& rate_slot) const {
     SlipEnd const& end = ends(item);
     SlipEndBaseline const& baseline = baselines(item);
@@ -88,7 +88,7 @@ struct SlipEndValues {
   }
 
  private:
-  /// What constrain_to_all() asks of one end.
+  /// The surfaces of one end, as constrain_to_all() asks for them.
   struct Surfaces {
     Kokkos::View<SlipSurfaceView const*, MemorySpace> const& all;
     SlipEnd const& end;
@@ -103,7 +103,7 @@ struct SlipEndValues {
     return matrix < 0 ? v : matrices(matrix) * v;
   }
 };
-/// Once per plan and baseline mesh.
+/// Fills the baselines of all ends, once per plan and baseline mesh.
 template <class Exec>
 void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename Exec::memory_space> const& ends,
                         Kokkos::View<SlipSurfaceView const*, typename Exec::memory_space> const& surfaces,

@@ -48,7 +48,7 @@ struct AskNodes {
   }
 
  private:
-  /// What constrain_to_all() asks of one node.
+  /// The surfaces of one node, as constrain_to_all() asks for them.
   struct Surfaces {
     SlipNodeTable<MemorySpace> const& table;
     Index from;

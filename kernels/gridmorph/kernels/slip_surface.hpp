@@ -80,7 +80,8 @@ struct ProfileView {
     return lo;
   }
 
-  /// Written in differences, so that a constant profile comes back bit for bit; the end slopes are continued outside.
+  /// The value of the profile at an axial position, in differences, so that a constant profile comes back bit for bit;
+  /// the end slopes are continued outside.
   KOKKOS_INLINE_FUNCTION double operator()(double a) const {
     ProfileKnot const &first = knots[0], &last = knots[size - 1];
     if (a <= first.axial) return first.radius + first.slope * (a - first.axial);
@@ -96,7 +97,7 @@ struct ProfileView {
     return lo.radius + (rise + h * (slopes + h * bends));
   }
 
-  /// Its derivative with respect to the axial position.
+  /// The derivative of the profile with respect to the axial position.
   KOKKOS_INLINE_FUNCTION double derivative(double a) const {
     if (a <= knots[0].axial) return knots[0].slope;
     if (a >= knots[size - 1].axial) return knots[size - 1].slope;
@@ -209,6 +210,7 @@ struct SlipSurfaceView {
     return constrain(baseline, own_offset(baseline), u);
   }
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
+    // What does not move stays to the bit, also where the baseline is off the surface.
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
     if (kind == SlipKind::facets) {
@@ -229,6 +231,7 @@ struct SlipSurfaceView {
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction);
     double const r = norm(moved);
+    // On the axis no radial direction leads back: only a wall across the axis has something to say there.
     if (!(r > 0)) {
       if (!lies_across()) return u;
       MeridionalFoot const f = foot(a + du, 0);

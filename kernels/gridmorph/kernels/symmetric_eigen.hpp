@@ -37,6 +37,7 @@ KOKKOS_INLINE_FUNCTION void diagonalise(double (&a)[N][N], double (&v)[N][N]) {
       for (std::size_t q = p + 1; q < N; ++q) {
         if (a[p][q] == 0) continue;
         double const h = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        // The smaller of both rotations that make this entry zero: with it the sweeps converge.
         double const t = (h >= 0 ? 1 : -1) / ((h < 0 ? -h : h) + sqrt(h * h + 1));
         double const c = 1 / sqrt(t * t + 1), s = t * c;
         for (std::size_t k = 0; k < N; ++k) turn(c, s, a[k][p], a[k][q]);

@@ -28,7 +28,7 @@ namespace gridmorph::kernels {
 struct LineStep {
   Index s, a, b;
 };
-/// Along which nodes lie side by side in a row: on neighbouring lines, or on one line.
+/// The direction along which the nodes of a row lie side by side: on neighbouring lines (a), or on one line (s).
 enum class RowAlong { a, s };
 template <RowAlong along>
 KOKKOS_INLINE_FUNCTION Index row_step(LineStep const& step) {
@@ -245,6 +245,7 @@ struct LineGradients {
       }
     }
     Index const upper = lower + chain.section_size();
+    // All nodes of the rows are on one line, whose ends get the sum.
     if constexpr (along == RowAlong::s) {
       Vec3 of_first, of_last;
       for (int w = 0; w < width; ++w) {

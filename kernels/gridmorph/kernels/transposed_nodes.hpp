@@ -10,13 +10,13 @@
 
 namespace gridmorph::kernels {
 
-/// Gradients of all nodes, from where the caller keeps them.
+/// Reads the gradients of all nodes from where the caller keeps them.
 struct ReadNodes {
   VectorArray nodes;
   Vec3* u;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { u[n] = nodes[n]; }
 };
-/// And those of boundary nodes, to there.
+/// Writes the gradients of boundary nodes to where the caller keeps them.
 struct WriteSlots {
   Vec3 const* slots;
   VectorArray out;
@@ -89,7 +89,7 @@ struct ReadWith {
     read[n] = Add ? read[n] + sign * u[n] : sign * u[n];
   }
 };
-/// The same of all nodes by a share each.
+/// What a field is read with where each node has a share of it: read(n) = share(n) u(n).
 template <class MemorySpace>
 struct ReadWithShare {
   Kokkos::View<float const*, MemorySpace> share;

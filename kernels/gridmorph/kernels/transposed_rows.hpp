@@ -52,7 +52,7 @@ void gather_rows(char const* label, Exec const& exec, TransposedRows<typename Ex
   launch(label, exec, 0, rows.size(),
          GatherRows<typename Exec::memory_space, Targets, Sources>{rows, targets, sources});
 }
-/// In place, one launch per layer.
+/// Gathers in place, layer after layer, one launch per layer.
 template <class Exec, class Value>
 void gather_layers(char const* label, Exec const& exec, TransposedLayers<typename Exec::memory_space> const& layers,
                    Value* value) {
@@ -61,7 +61,7 @@ void gather_layers(char const* label, Exec const& exec, TransposedLayers<typenam
            GatherRows<typename Exec::memory_space, Value*, Value*>{layers.rows, value, value});
 }
 
-/// The same where sources are three arrays.
+/// sources(item) += the sum of weight targets(row), where sources are three arrays.
 template <class MemorySpace>
 struct AddToField {
   TransposedRows<MemorySpace> rows;
@@ -80,7 +80,7 @@ struct ClearValues {
   Value* value;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { value[n] = Value{}; }
 };
-/// Those of listed nodes: values that had been written over.
+/// Clears the values of listed nodes, which had been written over.
 template <class MemorySpace>
 struct ClearListed {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
@@ -89,7 +89,7 @@ struct ClearListed {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { value[node(k)] = {}; }
 };
 
-/// What a group at `centre` says at x: g its gradient, added with a weight.
+/// Adds to the gradient of a group's motion that of its value_at() x, g, with a weight.
 KOKKOS_INLINE_FUNCTION void add_value_gradient(Vec3& to, Vec3 const& g, double weight, Vec3 const&, Vec3 const&) {
   to += weight * g;
 }
@@ -131,12 +131,13 @@ struct LatticeReaders {
   Kokkos::View<std::int32_t const*, MemorySpace> node;          ///< those of chunk c from first(c) on
   Kokkos::View<Index const*, MemorySpace> first;                ///< (chunks + 1)
   Kokkos::View<std::int32_t const*, MemorySpace> lattice_node;  ///< of cells that hold any of them
-  Kokkos::View<Index const*, MemorySpace> first_part;           ///< of those, and one past the last
-  Kokkos::View<std::int32_t const*, MemorySpace> part;          ///< LatticeParts::parts, cell by cell
+  Kokkos::View<Index const*, MemorySpace> first_part;  ///< first of `part` for each lattice node, and one past the last
+  Kokkos::View<std::int32_t const*, MemorySpace> part;  ///< LatticeParts::parts, cell by cell
   Index n_chunks = 0;
 };
 
-/// Item: a chunk. parts: eight per chunk, of the corners of its cell, which are computed with in lanes.
+/// The gradients at the corners of the cell of each chunk, which is an item. parts: eight per chunk, of the corners of
+/// its cell, which are computed with in lanes.
 template <class MemorySpace>
 struct LatticeParts {
   LatticeReaders<MemorySpace> readers;
@@ -178,7 +179,8 @@ struct LatticeParts {
     return load_lanes<T>(upper) > 0 ? broadcast<T>(t) : broadcast<T>(1 - t);
   }
 };
-/// Item: a lattice node that is read, which gathers from the cells around it; the others stay zero.
+/// The gradient of each lattice node that is read, which is an item and gathers from the cells around it; the others
+/// stay zero.
 template <class MemorySpace>
 struct LatticeSums {
   LatticeReaders<MemorySpace> readers;
@@ -190,7 +192,7 @@ struct LatticeSums {
     value[readers.lattice_node(k)] = sum;
   }
 };
-/// value: gradients of lattice nodes, from those of what nodes read; parts: workspace.
+/// Gathers `value`, the gradients of lattice nodes, from those of what nodes read; parts: workspace.
 template <class Exec>
 void gather_readers(Exec const& exec, LatticeReaders<typename Exec::memory_space> const& readers,
                     Field<double const> const& x, Vec3 const* gradient, Vec3* parts, Vec3* value) {
@@ -224,7 +226,7 @@ struct PassMotionsBack {
     motion[place] = sum;
   }
 };
-/// What rows have written to u begins as the gradient of their motion; listed places.
+/// At listed places, what rows have written to u becomes the first gradient of their motion.
 template <class MemorySpace>
 struct MotionsFromNodes {
   Kokkos::View<std::int32_t const*, MemorySpace> place, node;

@@ -11,8 +11,8 @@
 
 namespace gridmorph::kernels {
 
-/// Of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their slot, in its
-/// own.
+/// The gradients of nodes that slide: what is handed to their shift, in the frame of SlidingShift::node, and to their
+/// slot, in its own.
 template <class MemorySpace>
 struct SlidingShiftsBack {
   AddSlidingShifts<MemorySpace, true> forwards;
@@ -35,7 +35,8 @@ struct SlidingShiftsBack {
   }
 };
 
-/// Item (d, chunk): its part of dJ/da_d, of the nodes that move in space and then of those that slide.
+/// The part of dJ/da_d that chunk c has, for each item (d, c): of the nodes that move in space and then of those that
+/// slide.
 template <class MemorySpace>
 struct PartialShiftGradients {
   Kokkos::View<Index const*, MemorySpace> node;

@@ -39,7 +39,7 @@ KOKKOS_INLINE_FUNCTION Index side_line(SideTable<MemorySpace> const& table, Chai
   return table.sides(chain.first_side + q).first + Index(chain.n_s) * w;
 }
 
-/// Of what the correction gives the nodes of a slab.
+/// The gradients of side nodes from those of what the correction gives the nodes of a slab.
 template <class MemorySpace>
 struct SideGradients {
   Kokkos::View<SideSlab const*, MemorySpace> slabs;

@@ -3,10 +3,11 @@
 // out,
 //
 //   plane, axial   g - (n.g) n
-//   revolution     g - (m.g) ((1 - e / r) m - p' n) - (e / r) (g - (n.g) n),  m the radial direction, e too far off, p'
-//   the slope meridional     g - (k.g) a - e ((t.g) c + (k_r / r) (g - (n.g) n - (m.g) m)),  k the normal, a the
-//   gradient of the distance along it,
-//                  t the tangent, c t . q' the rate at which the normal turns
+//   revolution     g - (m.g) ((1 - e / r) m - p' n) - (e / r) (g - (n.g) n),
+//                  m the radial direction, e too far off, p' the slope
+//   meridional     g - (k.g) a - e ((t.g) c + (k_r / r) (g - (n.g) n - (m.g) m)),
+//                  k the normal, a the gradient of the distance along it, t the tangent, c t . q' the rate at which the
+//                  normal turns
 //
 // of facets and where several surfaces meet by exact rates along three axes.
 //

@@ -29,7 +29,7 @@ KOKKOS_FORCEINLINE_FUNCTION void fill_turn_weights(Chain const& chain, unsigned 
     fill([=](double at) { return 1 - law_weight(LineLaw::c1, from + sign * at); });
 }
 
-/// Of line ends: arrays as those of TurnedEnds, pivots unused.
+/// The gradients of line ends, in arrays as those of TurnedEnds, pivots unused.
 struct TurnedEndGradients {
   TurnedEnds<double> at;
 
@@ -74,7 +74,7 @@ class TurnedLines {
         add_end(end, f, x, g, n);
       }
   }
-  /// g: gradients of the rotations that the lines hand to nodes.
+  /// Takes into the sums g, gradients of the rotations that the lines hand to nodes.
   KOKKOS_INLINE_FUNCTION void add_turns(double const* t, VectorRow<width> const& g, int n) {
     double f[width];
     for (unsigned end = 0; end < 2; ++end) {
@@ -98,7 +98,7 @@ class TurnedLines {
         turns.set(at, sums_[end].turn_of(w));
       }
   }
-  /// The same of one line.
+  /// Sets the gradients at both ends of one line, the sums over its shares.
   KOKKOS_INLINE_FUNCTION void write_sum(Index lower, TurnedEndGradients const& turned,
                                         Field<double> const& turns) const {
     for (unsigned end = 0; end < 2; ++end) {

@@ -14,7 +14,7 @@
 
 namespace gridmorph::kernels {
 
-/// Of what turned_between() gives a node at x, whose gradient is g: added to those of the two ends.
+/// Adds to the gradients of the two ends those of what turned_between() gives a node at x, whose gradient is g.
 KOKKOS_INLINE_FUNCTION void turned_gradient(TurnedEnds<double const> const& ends, Chain const& chain, Index lower,
                                             Index upper, double t, Vec3 const& x, Vec3 const& g, TurnedGradient& first,
                                             TurnedGradient& last) {
@@ -54,7 +54,7 @@ struct TurnEndsBack {
   }
 };
 
-/// What depends on what: of target n those dependents from first(n) on.
+/// Which targets depend on which vectors: the dependents of target n are those from first(n) on.
 template <class MemorySpace>
 struct Dependents {
   Kokkos::View<Index const*, MemorySpace> target, first, dependent;
@@ -142,7 +142,7 @@ struct RawRootTurnBack {
   }
 
  private:
-  /// Of a face of the wall: two neighbours of its root.
+  /// The arms of a face of the wall, to two neighbours of its root.
   struct Arms {
     Vec3 before[2], after[2];
   };
@@ -187,7 +187,7 @@ struct RawRootTurnBack {
     Vec3 const to = mean[root.body];
     return way_near_gradient(free, to, through_line(root, fan, way_near(free, to), g, kept));
   }
-  /// Of the turn before the line at an edge of the wall held it back; `kept`: of the face that did.
+  /// The gradient of the turn before the line at an edge of the wall held it back; `kept`: that of the face that did.
   KOKKOS_INLINE_FUNCTION static Vec3 through_line(Root const& root, Fan const& fan, Vec3 const& turn, Vec3 const& g,
                                                   KeptHeightGradient& kept) {
     if (!(dot(root.line, root.line) > 0)) return g;
@@ -344,7 +344,7 @@ struct ClearEndGradients {
     turned.set(n, {});
   }
 };
-/// The same for ends of the lines of the near field alone.
+/// Clears the gradients of the ends of the near field's lines alone.
 template <class MemorySpace>
 struct ClearLineGradients {
   Kokkos::View<NearFieldLine const*, MemorySpace> lines;

@@ -10,12 +10,12 @@
 
 namespace gridmorph::kernels {
 
-/// Of other_way(r), r before.
+/// The gradient of r from that of other_way(r), g.
 KOKKOS_INLINE_FUNCTION Vec3 other_way_gradient(Vec3 const& r, Vec3 const& g) {
   double const square = dot(r, r);
   return (-1 / square) * g + (2 * dot(g, r) / (square * square)) * r;
 }
-/// Of settled(r) or way_near(r), r before.
+/// The gradient of r from that of settled(r), or of way_near(r, to), g.
 KOKKOS_INLINE_FUNCTION Vec3 settled_gradient(Vec3 const& r, Vec3 const& g) {
   return settled(r) == r ? g : other_way_gradient(r, g);
 }
@@ -23,7 +23,7 @@ KOKKOS_INLINE_FUNCTION Vec3 way_near_gradient(Vec3 const& r, Vec3 const& to, Vec
   return way_near(r, to) == r ? g : other_way_gradient(r, g);
 }
 
-/// Of `after` in turn_between(before, after).
+/// The gradient of `after` from that of turn_between(before, after), g.
 KOKKOS_INLINE_FUNCTION Vec3 turn_between_gradient(Vec3 const& before, Vec3 const& after, Vec3 const& g) {
   using std::sqrt;
   Vec3 const c = cross(before, after);
@@ -42,8 +42,8 @@ KOKKOS_INLINE_FUNCTION Vec3 turn_between_gradient(Vec3 const& before, Vec3 const
   return (of_size * norm(before) / length) * after + of_cosine * before + cross(of_c, before);
 }
 
-/// Of both rotations in their product, which has been turned round if sign is -1, from that of the rotation that it is:
-/// added.
+/// Adds the gradients of both rotations in their product, which has been turned round if sign is -1, from that of the
+/// rotation that it is.
 KOKKOS_INLINE_FUNCTION void add_product(TurnProduct<Vec3> const& product, double sign, Vec3 const& first,
                                         Vec3 const& next, Vec3 const& of_r, Vec3& of_first, Vec3& of_next) {
   double const a = dot(first, first), b = dot(next, next), p = 1 - a, q = 1 - b, size = product.size + product.real;
@@ -54,7 +54,7 @@ KOKKOS_INLINE_FUNCTION void add_product(TurnProduct<Vec3> const& product, double
   of_first += (2 * of_a) * first + (2 * q) * of_imaginary + (-4 * of_real) * next + 4 * cross(of_imaginary, next);
   of_next += (2 * of_b) * next + (2 * p) * of_imaginary + (-4 * of_real) * first + 4 * cross(first, of_imaginary);
 }
-/// Of both rotations in turn_then(first, next): added.
+/// Adds the gradients of both rotations in turn_then(first, next).
 KOKKOS_INLINE_FUNCTION void add_turn_then(Vec3 const& first, Vec3 const& next, Vec3 const& g, Vec3& of_first,
                                           Vec3& of_next) {
   TurnProduct<Vec3> product(first, next);
@@ -62,7 +62,7 @@ KOKKOS_INLINE_FUNCTION void add_turn_then(Vec3 const& first, Vec3 const& next, V
   if (round) product.turn_round();
   add_product(product, round ? -1 : 1, first, next, settled_gradient(product.rotation(), g), of_first, of_next);
 }
-/// Of both rotations in turn_on(first, correction): added.
+/// Adds the gradients of both rotations in turn_on(first, correction).
 KOKKOS_INLINE_FUNCTION void add_turn_on(Vec3 const& first, Vec3 const& correction, Vec3 const& g, Vec3& of_first,
                                         Vec3& of_correction) {
   if (!keeps_its_way(first)) return add_turn_then(first, correction, g, of_first, of_correction);
@@ -72,7 +72,7 @@ KOKKOS_INLINE_FUNCTION void add_turn_on(Vec3 const& first, Vec3 const& correctio
   add_product(product, round ? -1 : 1, first, correction, g, of_first, of_correction);
 }
 
-/// Of v in v / |v|.
+/// The gradient of v from that of v / |v|, g.
 KOKKOS_INLINE_FUNCTION Vec3 unit_gradient(Vec3 const& v, Vec3 const& g) {
   double const size = norm(v);
   Vec3 const u = (1 / size) * v;
@@ -96,7 +96,8 @@ struct FanMoments {
   }
 };
 
-/// Of what twist_about() takes: of axis and swing, and of each arm after, linear in that before times its weight.
+/// The gradient of what twist_about() takes: of axis and swing, and of each arm after, linear in that before times its
+/// weight.
 struct TwistGradient {
   Vec3 axis, swing;
   Vec3 t1, t2, by1, by2;
@@ -142,7 +143,7 @@ struct FanTwist {
   }
 
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Vec3 rotation() const { return twist * axis; }
-  /// g: gradient of rotation().
+  /// The gradient of what the twist takes from that of rotation(), g.
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION TwistGradient gradient(Vec3 const& g) const {
     TwistGradient of;
     double const whole = sine * sine + cosine * cosine;
@@ -184,12 +185,12 @@ struct FanTwist {
   bool on_a_line;
 };
 
-/// Of the turn in share_that_keeps_height() and of the face that decides, where one does.
+/// The gradient of the turn in share_that_keeps_height(), and of the face that decides, where one does.
 struct KeptHeightGradient {
   Vec3 turn, moved;
   Index face = -1;
 };
-/// g: of the share. before, after: as there.
+/// The gradient from that of the share, g. before, after: as in share_that_keeps_height().
 template <class Before, class After>
 KOKKOS_INLINE_FUNCTION KeptHeightGradient kept_height_gradient(Vec3 const& line, Vec3 const& turn, Index n_faces,
                                                                Before const& before, After const& after, double g) {
@@ -227,7 +228,7 @@ KOKKOS_INLINE_FUNCTION KeptHeightGradient kept_height_gradient(Vec3 const& line,
 /// Rotation of a fan, its swing from one normal to the other and its twist, and the gradients of what it takes.
 class FanTurn {
  public:
-  /// moved: not zero.
+  /// The turn of a fan whose normal goes from `normal` to `moved`, which is not zero.
   KOKKOS_FORCEINLINE_FUNCTION FanTurn(Vec3 const& normal, Vec3 const& moved, FanMoments const& sums)
       : normal_(normal), moved_(moved), twist_((1 / norm(moved)) * moved, turn_between(normal, moved), sums) {}
 
@@ -237,7 +238,7 @@ class FanTurn {
     Vec3 moved;           ///< of the normal after
     TwistGradient twist;  ///< of arms
   };
-  /// g: of rotation().
+  /// The gradient of what the turn takes from that of rotation(), g.
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Gradient gradient(Vec3 const& g) const {
     Vec3 of_swing, of_twist;
     add_turn_then(twist_.swing, twist_.rotation(), g, of_swing, of_twist);

@@ -141,8 +141,8 @@ struct WallTurnBack {
   }
 
  private:
-  /// Of the turn before the lines on the node held it back: of that which did so most.
-  /// `kept`: of the face that decided.
+  /// The gradient of the turn before the lines on the node held it back, through that line which did so most. `kept`:
+  /// that of the face that decided.
   template <class Before, class After>
   KOKKOS_INLINE_FUNCTION Vec3 through_lines(Index r, Index n_faces, Vec3 const& turn, Vec3 const& g,
                                             Before const& before, After const& after, KeptHeightGradient& kept) const {
@@ -163,7 +163,7 @@ struct WallTurnBack {
   }
 };
 
-/// Of the quaternion of half a body's rotation, and of its shift.
+/// The gradient of the quaternion of half a body's rotation, and of its shift.
 struct BodyGradient {
   Vec3 imaginary;
   double less = 0;
@@ -176,7 +176,7 @@ struct BodyGradient {
   }
 };
 
-/// Of BodyTurnField::turned() with a share f of half, whose gradient is g: added.
+/// Adds the gradient of `half` from that of BodyTurnField::turned() with a share f of it, g.
 KOKKOS_INLINE_FUNCTION void add_body_turn(Quaternion<Vec3> const& half, double f, Vec3 const& y, Vec3 const& g,
                                           BodyGradient& to) {
   auto const h = Quaternion<Vec3>::share(half, f);
@@ -226,7 +226,8 @@ struct BodyPartsOfNodes {
     }
   }
 };
-/// The same of the motions around wall nodes, which lose what their body does: TakeTurnsFromFrames.
+/// What the turns and shifts of all bodies give to the motions around wall nodes, handed back to them. These motions
+/// lose what their body does, as TakeTurnsFromFrames has it.
 template <class MemorySpace>
 struct BodyPartsOfFrames {
   Quaternion<Vec3> const* half;
@@ -250,7 +251,7 @@ struct BodyPartsOfFrames {
     }
   }
 };
-/// Item: a body.
+/// The sum of the parts of each body, which is an item.
 struct BodySums {
   BodyGradient const* parts;
   Index n_chunks, n_bodies;

@@ -18,7 +18,7 @@ struct NearFieldLine {
   std::int32_t matrix;  ///< frame of the root's slot -> chain frame, -1: the same
   Vec3 normal;          ///< of the wall, unit
   Vec3 edge;            ///< from the wall to the first node that coordinates resolve
-  double f0;            ///< there
+  double f0;            ///< share f of the wall's rotation at that node
 };
 
 /// What is kept of an end: its value, or its rate. The pivot does not move.
@@ -43,7 +43,7 @@ struct TurnEnds {
   }
 };
 
-/// Lines of the near field.
+/// The rotations and ends of the lines of the near field.
 template <class MemorySpace, class V>
 struct TurnNearField {
   Kokkos::View<NearFieldLine const*, MemorySpace> lines;
@@ -67,7 +67,7 @@ struct TurnNearField {
     V in, out;  ///< rotations of its two ends
     TurnedEnd<V> lower, upper;
   };
-  /// Of a line, by the rotations of its root.
+  /// What the ends of a line do, by the rotations of its root.
   template <class Vectors>
   KOKKOS_INLINE_FUNCTION Found at(NearFieldLine const& line, Vectors const& inner, Vectors const& raw,
                                   Vectors const& outer) const {
@@ -99,7 +99,7 @@ struct TurnNearField {
  private:
   using Q = Quaternion<V>;
 
-  /// q or -q, the same rotation.
+  /// Either q or -q, which are one rotation: the one that is nearer to `to`.
   KOKKOS_INLINE_FUNCTION static Q nearer(Q const& to, Q const& q) {
     auto const cosine = dot(to.imaginary, q.imaginary) + (Scalar{1} - to.less) * (Scalar{1} - q.less);
     return cosine < 0 ? Q{-q.imaginary, Scalar{2} - q.less} : q;

@@ -8,14 +8,12 @@
 //   square      f0 = (1 - t)^2, f1 = t^2
 //   c1          f0 = 1 - f1,    f1 = 3 t^2 - 2 t^3
 //   far         f0 = 1 - scale (P(reach t) - 1),  P(s) = (1 + s^2 / (1 + s))^(1/8),  scale = 1 / (P(reach) - 1): about
-//   like the
-//               logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with no slope
-//               at its start. By square roots, which every machine rounds alike
+//               like the logarithm of the distance from a body, which spreads the shear r da/dr of a turn evenly, with
+//               no slope at its start. By square roots, which every machine rounds alike
 //   common      one rotation about one pivot, from one end's to the other's, by c1
 //   near_field  one rotation about the wall node, from the wall's to that of the outer edge, and the stretch s of the
-//   wall's
-//               lines (turned_ends.hpp):  u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t +
-//               0.03))^3
+//               wall's lines (turned_ends.hpp):
+//               u0 + [(1 + f0 (s - 1)) R(f0) - I](x - p0),  f0 = (1 - 1.03 t^2 / (t + 0.03))^3
 //
 // Shares of rotations (rotation.hpp) are taken by unit quaternions, here from that of no rotation or of the other end,
 //
@@ -39,7 +37,7 @@ struct TurnWeights {
   double lower, upper;
 };
 
-/// P of the law `far`.
+/// The function P of the law `far`.
 KOKKOS_INLINE_FUNCTION double far_growth(double s) {
   using std::sqrt;
   return sqrt(sqrt(sqrt(1 + s * s / (1 + s))));
@@ -47,7 +45,8 @@ KOKKOS_INLINE_FUNCTION double far_growth(double s) {
 KOKKOS_INLINE_FUNCTION double far_weight(Chain const& chain, double t) {
   return 1 - chain.turn_scale * (far_growth(chain.turn_reach * t) - 1);
 }
-/// Without a slope at the wall, so that the first cells turn with it whole.
+/// The weight of the wall's rotation at t in the near field, without a slope at the wall, so that the first cells turn
+/// with it whole.
 KOKKOS_INLINE_FUNCTION double near_field_weight(double t) {
   constexpr double start = 0.03;
   double const left = 1 - (1 + start) * t * t / (t + start);
@@ -75,7 +74,7 @@ struct TurnedEnd {
   typename Quaternion<V>::Scalar stretch{};  ///< s - 1; near field
 };
 
-/// Those of line ends: eight arrays one after another.
+/// How all line ends turn: eight arrays one after another.
 template <class T>
 struct TurnedEnds {
   static constexpr int components = 8;
@@ -146,7 +145,7 @@ KOKKOS_INLINE_FUNCTION V turned_between(TurnedEndsWithRates const& all, Chain co
   return sum;
 }
 
-/// The same for a node of line (a, b) of a chain that turns; the rate where there are rates.
+/// What the ends of line (a, b) of a chain that turns add to a node at x; the rate of that where there are rates.
 KOKKOS_INLINE_FUNCTION Vec3 turned_between(TurnedEndsWithRates const& all, Chain const& chain, Index a, Index b,
                                            double t, Vec3 const& x) {
   Index const lower = chain.first_end_value + a + chain.n_a * b, upper = lower + chain.section_size();

@@ -16,7 +16,7 @@ struct TurnedRow {
   double const* t;
   int n;
 
-  /// x: positions in the frame of the chain.
+  /// Adds what the ends turn a row of nodes by. x: positions in the frame of the chain.
   template <class Step>
   KOKKOS_INLINE_FUNCTION void add_to(Step step, VectorRow<width> const& x, VectorRow<width>& v) const {
     Weights f;
@@ -56,8 +56,8 @@ struct TurnedRow {
       fill([&](double at) { return (1 - from - sign * at) * (1 - from - sign * at); }, f);
   }
   KOKKOS_FORCEINLINE_FUNCTION static Vec3 get(VectorRow<width> const& x, int w) { return {x.x[w], x.y[w], x.z[w]}; }
-  /// Through a row of its own: nothing that is read can lie where it is written, so that the compiler can vectorise the
-  /// loop.
+  /// Adds change(w) to v, through a row of its own: nothing that is read can lie where it is written, so that the
+  /// compiler can vectorise the loop.
   template <class Change>
   KOKKOS_FORCEINLINE_FUNCTION void add(Change const& change, VectorRow<width>& v) const {
     VectorRow<width> row;

@@ -7,7 +7,7 @@
 
 namespace gridmorph::kernels {
 
-/// Where a point lies in its cell.
+/// The cell of a lattice that holds a point, and the place of the point in it.
 struct PlaceInCell {
   std::int64_t cell[3];
   double t[3];

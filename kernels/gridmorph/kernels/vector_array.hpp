@@ -20,7 +20,8 @@ struct ZoneArray {
   void *x, *y, *z;
 };
 
-/// Non-owning. Which are only read is known to the Views that they come from (mesh/vector_view.hpp).
+/// Vectors of nodes wherever they lie, not owned. Which are only read is known to the Views that they come from
+/// (mesh/vector_view.hpp).
 struct VectorArray {
   void* x = nullptr;
   void* y = nullptr;

@@ -1,8 +1,7 @@
 // First cell height and orthogonality at one node of a wall.
 //
 //   normal         n = t1 x t2 / |t1 x t2|, t1 and t2 the differences of wall nodes along the two grid directions of
-//   the
-//                  wall: central inside a wall patch, one-sided on its edges
+//                  the wall: central inside a wall patch, one-sided on its edges
 //   first height   |v . n|, v from the wall node to the next node on the grid line that leaves the wall
 //   orthogonality  angle between v and the normal, arccos(|v . n| / |v|): 0 degrees for a perpendicular line
 #pragma once
@@ -22,7 +21,8 @@ struct WallNode {
   bool defined = false;  ///< false where the normal or the line vanishes (poles) or a node is not finite
 };
 
-/// normal: of the wall, of any length; line: from the wall node to the first inner node.
+/// The measures at a node of a wall. normal: of the wall, of any length; line: from the wall node to the first inner
+/// node.
 KOKKOS_INLINE_FUNCTION WallNode wall_node(Vec3 const& normal, Vec3 const& line) {
   using compat::math::acos;
   double const area = norm(normal), length = norm(line);

@@ -52,8 +52,8 @@ struct UnweighedArms {
   KOKKOS_INLINE_FUNCTION double operator()(Vec3 const&) const { return 1; }
 };
 
-/// By what n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k) and after(k),
-/// V each. Where they lie on one line, their mean angle. weight(arm before): what it counts.
+/// The rotation by which n arms turn about the unit vector `axis` to which a rotation `swing` has taken them: before(k)
+/// and after(k), V each. Where they lie on one line, their mean angle. weight(arm before): what it counts.
 template <class V, class Before, class After, class Weight>
 KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Before const& before, After const& after,
                                      Weight const& weight) {
@@ -112,13 +112,14 @@ struct WallTable {
   Kokkos::View<Index const*, MemorySpace> first_line;
   Kokkos::View<Vec3 const*, MemorySpace> lines;
 
-  /// Of one of the faces around node r, `pair` the number of its first neighbour; x: the node there.
+  /// The normal, not of unit length, of one of the faces around node r, `pair` the number of its first neighbour; x:
+  /// the node there.
   template <class V>
   KOKKOS_INLINE_FUNCTION V face(Index pair, V const& x, Positions<V> const& at) const {
     V const a = at[around(pair)], b = at[around(pair + 1)];
     return flat ? cross(b - a, V{across}) : cross(a - x, b - x);
   }
-  /// Weighted by area.
+  /// The sum of the normals of the faces around node r, weighted by area; not of unit length.
   template <class V>
   KOKKOS_INLINE_FUNCTION V normal(Index r, Positions<V> const& at) const {
     V const x = at[node(r)];

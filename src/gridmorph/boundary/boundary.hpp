@@ -17,7 +17,7 @@ namespace gridmorph {
 /// elements.
 using GridFacet = std::array<int, 4>;
 
-/// One patch.
+/// The nodes and faces of one patch.
 struct BoundarySurface {
   std::vector<Index> nodes;  ///< of the mesh, each once: i fastest on a grid, otherwise ascending
   std::optional<std::array<int, 2>>
@@ -32,32 +32,32 @@ struct BoundarySurface {
 /// coordinates of the mesh and has no use for its elements.
 class Boundary {
  public:
-  /// Of a mesh of blocks; `size`: Mesh::size(), where it is known. Cost O(nodes of patches).
+  /// The boundary of a mesh of blocks; `size`: Mesh::size(), where it is known. Cost O(nodes of patches).
   explicit Boundary(Mesh const& mesh, std::optional<double> size = {});
-  /// Of a mesh of elements; `size` as above. Nodes of a patch are those of the boundary faces it got, or all it lists
-  /// where it got none. `regions`: regions_of_elements(), which become patches behind those of the mesh. Cost
-  /// O(boundary faces, log).
+  /// The boundary of a mesh of elements; `size` as above. Nodes of a patch are those of the boundary faces it got, or
+  /// all it lists where it got none. `regions`: regions_of_elements(), which become patches behind those of the mesh.
+  /// Cost O(boundary faces, log).
   Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
            std::optional<double> size = {}, std::span<Patch const> regions = {});
 
   /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the
   /// mesh.
   [[nodiscard]] Mesh const& mesh() const { return mesh_; }
-  /// Of the mesh.
+  /// The size of the mesh (Mesh::size()).
   [[nodiscard]] double size() const { return size_; }
-  /// Of the mesh, as exactly as its coarsest zone is known.
+  /// The precision of the coordinates of the mesh: that of its coarsest zone.
   [[nodiscard]] CoordinatePrecision const& precision() const { return precision_; }
   [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
-  /// From the plane of such a mesh to the second places of its nodes.
+  /// The vector from the plane of a plane mesh to the second places of its nodes.
   [[nodiscard]] Vec3 const& across() const { return across_; }
 
   /// Positions of the nodes of patches, one after another. Lines come twice, the second time across the plane of the
   /// mesh: as the edges of strips they have planes and profiles.
   [[nodiscard]] std::vector<Vec3> points(std::span<int const> patches) const;
   [[nodiscard]] std::vector<Vec3> points(int patch) const { return points({&patch, 1}); }
-  /// Their facets, in no particular orientation; none of lines.
+  /// The facets of patches, in no particular orientation; none of lines.
   [[nodiscard]] FacetList facets(std::span<int const> patches) const;
   /// Whether two patches have nodes of one zone in common.
   [[nodiscard]] bool share_nodes(int patch, int other) const;
@@ -66,9 +66,10 @@ class Boundary {
   [[nodiscard]] std::vector<std::array<Index, 2>> pairs(int connection) const;
   /// Whether a connection has nodes of a patch, on either side.
   [[nodiscard]] bool touches(int connection, int patch) const;
-  /// Own nodes of a periodic connection onto the donor's, fitted to them: files declare angles in single precision.
+  /// The transform that takes own nodes of a periodic connection onto the donor's, fitted to them: files declare angles
+  /// in single precision.
   [[nodiscard]] RigidTransform transform(int connection) const;
-  /// Of all periodic connections, or of those that touch one of the patches; in their order.
+  /// The transforms of all periodic connections, or of those that touch one of the patches; in their order.
   [[nodiscard]] std::vector<RigidTransform> periodic_transforms() const;
   [[nodiscard]] std::vector<RigidTransform> periodic_transforms(std::span<int const> patches) const;
 

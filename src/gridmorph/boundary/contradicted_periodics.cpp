@@ -12,7 +12,8 @@ namespace gridmorph {
 
 namespace {
 
-/// Of the mesh size: more than angles in single precision and rounded axes leave.
+/// The share of the mesh size by which partners are too far off: more than angles in single precision and rounded axes
+/// leave.
 constexpr double far_off_partner = 1e-3;
 
 struct PartnerNodes {

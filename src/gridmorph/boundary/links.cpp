@@ -64,7 +64,8 @@ class PeriodicFits {
     }
   }
 
-  /// That of its group, or its own where its nodes know better: files declare one angle for pitches that differ.
+  /// The transform of interface f: that of its group, or its own where its nodes know better: files declare one angle
+  /// for pitches that differ.
   [[nodiscard]] RigidTransform of(std::size_t f) const {
     Interface1to1 const& face = mesh_.interfaces[f];
     Group const& group = groups_[std::size_t(group_[f])];
@@ -113,7 +114,7 @@ class PeriodicFits {
     });
   }
 
-  /// One of a transform and its inverse, whichever a file declares.
+  /// Whether this is the one of a transform and its inverse that stands for both, whichever a file declares.
   [[nodiscard]] bool forwards(RigidTransform const& t) const {
     constexpr double single = 1e-6;
     auto const& m = t.rotation.m;
@@ -135,7 +136,7 @@ class PeriodicFits {
     return fit_periodic(declared, from, to, size_);
   }
 
-  /// To what files say in single precision.
+  /// Whether two transforms are the same to what files say in single precision.
   [[nodiscard]] bool alike(RigidTransform const& a, RigidTransform const& b) const {
     constexpr double single = 1e-6;
     double apart = distance(a.translation, b.translation) / (size_ > 0 ? size_ : 1);

@@ -35,8 +35,8 @@ struct Links {
 /// Cost: O(interface nodes).
 Links connect(Mesh const& mesh, TopologyOptions const& options);
 
-/// The same, for callers that go on looking: adds to `problems` instead of throwing. Interfaces whose points do not
-/// coincide are in the result all the same (their faces are claimed), those with ranges that cannot be are not.
+/// All links of a mesh, for callers that go on looking: adds to `problems` instead of throwing. Interfaces whose points
+/// do not coincide are in the result all the same (their faces are claimed), those with ranges that cannot be are not.
 Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const& options, Problems& problems);
 inline Links connect(Mesh const& mesh, TopologyOptions const& options, Problems& problems) {
   return connect(HostInstance(), mesh, options, problems);

@@ -16,8 +16,8 @@ struct PatchGrid {
   std::array<int, 2> extent{0, 0};  ///< along its two directions, the first one fastest
   std::vector<int> vertex;          ///< (extent[0] * extent[1])
   bool inward = false;              ///< direction 0 x direction 1 points out of the mesh, not into it
-  /// Of patches that are no grids (extent[1] is 1): BoundarySurface::faces, and the places of `vertex` in the order of
-  /// the file.
+  /// The BoundarySurface::faces of patches that are no grids (extent[1] is 1), and the places of `vertex` in the order
+  /// of the file.
   std::vector<GridFacet> faces;
   std::vector<int> listed;
   std::vector<Index> nodes;  ///< of the mesh, as `vertex`
@@ -34,14 +34,14 @@ struct PatchSurface {
   bool lines = false;            ///< of two corners, in the plane of a 2-D mesh
   PointNumbers numbers{0};
 
-  /// Cost O(nodes).
+  /// The surface of some patches. Cost O(nodes).
   PatchSurface(Boundary const& boundary, std::vector<int> const& patches);
 
   /// The quadrilaterals; those with two corners in one vertex are triangles, those with fewer are left out. All are
   /// right-handed about normals that point into the mesh.
   [[nodiscard]] std::vector<GridFacet> facets() const;
-  /// The same surface with faces of elements put together into grids (find_face_grids()), several of a patch where it
-  /// takes them; nothing where faces are left over. Cost O(faces, log).
+  /// This surface with faces of elements put together into grids (find_face_grids()), several of a patch where it takes
+  /// them; nothing where faces are left over. Cost O(faces, log).
   [[nodiscard]] std::optional<PatchSurface> in_grids(Boundary const& boundary) const;
   /// Vertices next to one another along grid lines, or along the sides of faces; ascending, none twice.
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;

@@ -24,7 +24,7 @@ struct InnerRegion {
   std::optional<IndexRange> nodes;
   /// Whether a place lies in the region; nothing: everything in the zones does.
   std::function<bool(Vec3 const& place)> holds;
-  /// Behind the trailing edges of blades or wings; locate_wakes() makes `holds` of it.
+  /// The place of a wake, behind the trailing edges of blades or wings; locate_wakes() makes `holds` of it.
   struct Wake {
     std::vector<std::string> of;        ///< patches of whole blades or wings
     bool of_wing = false;               ///< sections of a wing, not of blades about Motion::axis
@@ -61,17 +61,17 @@ inline bool is_box(Patch const& patch) {
 /// are not. Cost: a look at each cell of the zones that regions name without nodes.
 void add_regions(Mesh& mesh, std::span<InnerRegion const> regions);
 
-/// Of a mesh of blocks: whether each cell, zone after zone, i fastest, lies in the zones of the region and where it
+/// Whether each cell of a mesh of blocks, zone after zone, i fastest, lies in the zones of the region and where it
 /// holds (its middle does); none where a zone is not there. Cost: a look at each cell.
 std::vector<std::uint8_t> cells_of_region(Mesh const& mesh, InnerRegion const& region);
 
-/// Of a mesh of elements: whether each element lies in the region (its middle does); none of a subset that has faces
+/// Whether each element of a mesh of elements lies in the region (its middle does); none of a subset that has faces
 /// alone. Throws MotionError as add_regions() does, for regions without elements where they are only measured.
 std::vector<std::uint8_t> elements_of_region(Mesh const& mesh, InnerRegion const& region);
 
-/// Of a mesh of elements: a patch of kind `region` for each, which lists all nodes of the elements whose mean of the
-/// corners is inside, and of faces of subsets likewise; appends a note for each. Throws MotionError as add_regions()
-/// does. Cost: a look at each element of what regions name.
+/// The regions of a mesh of elements as patches: for each one of kind `region`, which lists all nodes of the elements
+/// whose mean of the corners is inside, and of faces of subsets likewise; appends a note for each. Throws MotionError
+/// as add_regions() does. Cost: a look at each element of what regions name.
 std::vector<Patch> regions_of_elements(Mesh const& mesh, std::span<InnerRegion const> regions,
                                        std::vector<std::string>& notes);
 

@@ -21,10 +21,10 @@ struct AnyConnection {
   int zone = -1, donor_zone = -1;
   std::optional<Periodic> const& periodic;
 };
-/// All of a mesh, which must outlive them.
+/// All connections of a mesh, which must outlive them.
 std::vector<AnyConnection> connections_of(Mesh const& mesh);
 
-/// Numbers in Mesh::patches and connections_of(), ascending.
+/// The patches and connections selected, by their numbers in Mesh::patches and connections_of(), ascending.
 struct Selection {
   std::vector<int> patches;
   std::vector<int> interfaces;  ///< by family or `type:periodic`: periodic ones; by their own name: plain ones too
@@ -48,7 +48,7 @@ std::string describe_selectable(Mesh const& mesh);
 /// Why a selector is no use: what was probably meant, and what there is.
 std::string matches_nothing(Mesh const& mesh, std::string const& selector);
 
-/// "'a', 'b', 'c' and 4 more".
+/// A list of names in quotes, for messages: "'a', 'b', 'c' and 4 more".
 std::string quote_list(std::vector<std::string> const& names, std::size_t at_most = 30);
 
 /// Family name if there is one, otherwise the connection's own name: how users know it.

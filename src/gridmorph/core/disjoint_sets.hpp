@@ -14,9 +14,9 @@ namespace gridmorph {
 template <class Number>
 class DisjointSets {
  public:
-  /// Every number alone.
+  /// Sets of `count` numbers, every number alone in its own.
   explicit DisjointSets(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), Number(0)); }
-  /// As roots() of others.
+  /// Sets as they are in another object, from its roots().
   explicit DisjointSets(std::vector<Number> roots) : root_(std::move(roots)) {}
 
   [[nodiscard]] Number root(Number n) {
@@ -27,12 +27,12 @@ class DisjointSets {
     auto const [low, high] = std::minmax({root(a), root(b)});
     root_[std::size_t(high)] = low;
   }
-  /// Of every number its root.
+  /// The root of every number.
   [[nodiscard]] std::vector<Number> roots() {
     for (std::size_t n = 0; n < root_.size(); ++n) root_[n] = root(Number(n));
     return root_;
   }
-  /// Of every number the number of its set; sets are counted from 0 in the order of their roots.
+  /// The number of the set of every number; sets are counted from 0 in the order of their roots.
   [[nodiscard]] std::vector<Number> set_numbers() {
     std::vector<Number> out(root_.size());
     Number count = 0;

@@ -54,7 +54,7 @@ void for_all(HostInstance const& host, std::string const& label, Index count, Fu
   });
 }
 
-/// The same one by one as cores become free, for large work.
+/// Calls f(n) for 0 <= n < count as for_all() does, but one by one as cores become free, for large work.
 template <class Function>
 void for_all_parts(HostInstance const& host, std::string const& label, Index count, Function const& f) {
   host.visit([&](auto const& exec) {

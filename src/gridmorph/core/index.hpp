@@ -42,7 +42,7 @@ struct Orientation {
     for (int a = 0; a < 3; ++a) out[axis[a]] = sign[a] * step[a];
     return out;
   }
-  /// First this, then next.
+  /// The orientation that applies first this one, then `next`.
   [[nodiscard]] Orientation then(Orientation const& next) const {
     Orientation o;
     for (int a = 0; a < 3; ++a) {
@@ -59,7 +59,7 @@ struct Orientation {
     }
     return o;
   }
-  /// +1 if it keeps handedness, -1 if it mirrors.
+  /// The sign of the orientation: +1 if it keeps handedness, -1 if it mirrors.
   [[nodiscard]] int determinant() const {
     int swaps = 0;
     for (int a = 0; a < 3; ++a)
@@ -80,7 +80,7 @@ struct IndexMap {
     return {donor_origin[0] + step[0], donor_origin[1] + step[1], donor_origin[2] + step[2]};
   }
   [[nodiscard]] IndexMap inverse() const { return {orientation.inverse(), donor_origin, own_origin}; }
-  /// First this, then next.
+  /// The map that applies first this one, then `next`.
   [[nodiscard]] IndexMap then(IndexMap const& next) const {
     return {orientation.then(next.orientation), own_origin, next(donor_origin)};
   }

@@ -23,9 +23,9 @@ struct KeyedIndices {
         number(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), n) {}
 };
 
-/// Ascending in key, numbers of equal keys in the order they had. By counting, a byte of the keys at a time (least
-/// significant first), in chunks that are counted and moved side by side: stable, so the result is the same for any
-/// number of chunks. Cost: 8 times 32 bytes per key.
+/// The list with keys ascending, numbers of equal keys in the order they had. By counting, a byte of the keys at a time
+/// (least significant first), in chunks that are counted and moved side by side: stable, so the result is the same for
+/// any number of chunks. Cost: 8 times 32 bytes per key.
 template <class Exec>
 KeyedIndices<typename Exec::memory_space> sort_keys(Exec const& exec, KeyedIndices<typename Exec::memory_space> list) {
   using MemorySpace = typename Exec::memory_space;

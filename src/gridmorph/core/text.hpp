@@ -9,10 +9,10 @@
 
 namespace gridmorph {
 
-/// As messages show it, with so many significant digits at most, as "%.3g" writes it with 3.
+/// A number as messages show it, with so many significant digits at most, as "%.3g" writes it with 3.
 std::string to_text(double value, int digits);
 
-/// "(x, y, z)"
+/// A point as messages show it: "(x, y, z)".
 std::string to_text(Vec3 const& point, int digits);
 
 /// The whole text as a number, or nothing. HUGE_VAL when it is too large to represent; too small is zero.

@@ -18,14 +18,15 @@ struct ArcFaces {
   int first_station = 0, last_station = 0;
 };
 
-/// Takes them out of the patches of blade and end wall: the rest of a patch stays in up to four pieces. Their family is
-/// that of the blade with `_fillet` behind it, and they keep the blade's as another one, so that rules that name the
-/// blade name them too; walls without a family get one of their patch's name. A face that has nodes on the arc and
-/// others beyond counts as the arc's, so that the end wall's own nodes are all on the end wall. Cost O(patches).
+/// Takes the faces on arcs out of the patches of blade and end wall: the rest of a patch stays in up to four pieces.
+/// Their family is that of the blade with `_fillet` behind it, and they keep the blade's as another one, so that rules
+/// that name the blade name them too; walls without a family get one of their patch's name. A face that has nodes on
+/// the arc and others beyond counts as the arc's, so that the end wall's own nodes are all on the end wall. Cost
+/// O(patches).
 void separate_arcs(Mesh const& before, FilletOptions const& options, WallSheets const& sheets,
                    SheetLayers const& layers, std::span<ArcFaces const> arcs, SplitMesh& split);
 
-/// The same of elements: faces that have a node with `on_arc` set.
+/// Makes the arcs patches of their own in a mesh of elements: faces that have a node with `on_arc` set.
 void separate_arcs(FilletOptions const& options, std::span<std::uint8_t const> on_arc, Mesh& mesh);
 
 }  // namespace gridmorph

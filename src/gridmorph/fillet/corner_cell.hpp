@@ -23,12 +23,12 @@ class CornerLattice {
   /// The only element along a root edge, its ends in the order of the edge. Throws MeshError for a collapsed one, and
   /// where both of its faces there are of one wall.
   [[nodiscard]] CornerCell first(std::array<Index32, 2> const& root_edge) const;
-  /// Farther off a wall; nothing where there is no hexahedron.
+  /// The cell next to one, farther off a wall; nothing where there is no hexahedron.
   [[nodiscard]] std::optional<CornerCell> off(CornerCell const& cell, int wall) const;
-  /// Behind an end along the corner, across periodic connections too; nothing at boundaries. Throws MeshError for other
-  /// elements.
+  /// The cell behind an end of one along the corner, across periodic connections too; nothing at boundaries. Throws
+  /// MeshError for other elements.
   [[nodiscard]] std::optional<CornerCell> behind(CornerCell const& cell, int end) const;
-  /// Nodes around the face at an end, from the one at the walls on, the farthest one third.
+  /// The nodes around the face at an end, from the one at the walls on, the farthest one third.
   [[nodiscard]] static std::array<Index32, 4> end_face(CornerCell const& cell, int end);
 
   [[nodiscard]] JoinedElements const& elements() const { return elements_; }

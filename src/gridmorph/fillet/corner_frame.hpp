@@ -14,9 +14,9 @@ struct CornerFrame {
 
   [[nodiscard]] int zone_number() const { return sheet[0]->zone; }
   [[nodiscard]] int along() const { return 3 - sheet[0]->axis - sheet[1]->axis; }
-  /// Nodes along the corner.
+  /// The number of nodes along the corner.
   [[nodiscard]] int stations() const { return zone->extent[along()]; }
-  /// `off[w]`: cells between the node and wall w.
+  /// The index of a node at a station. `off[w]`: cells between the node and wall w.
   [[nodiscard]] Index3 index(int station, std::array<int, 2> off) const {
     Index3 p{0, 0, 0};
     p[along()] = station;
@@ -24,11 +24,11 @@ struct CornerFrame {
       p[sheet[w]->axis] = sheet[w]->side == 0 ? off[w] : zone->extent[sheet[w]->axis] - 1 - off[w];
     return p;
   }
-  /// Cells from wall w to the other side of the zone.
+  /// The number of cells from wall w to the other side of the zone.
   [[nodiscard]] int cells(int w) const { return zone->extent[sheet[std::size_t(w)]->axis] - 1; }
 };
 
-/// All of a mesh, zone after zone.
+/// All corners of a mesh, zone after zone.
 std::vector<CornerFrame> corners_of(Mesh const& mesh, WallSheets const& sheets);
 
 /// A station of a corner.
@@ -51,9 +51,9 @@ class CornerRows {
 
   [[nodiscard]] std::vector<CornerRow> const& rows() const { return rows_; }
   [[nodiscard]] int row_of(std::size_t corner) const { return row_of_[corner]; }
-  /// Number in its row of a station.
+  /// The number of a station in its row.
   [[nodiscard]] int number(CornerPlace const& place) const { return number_[place.corner][std::size_t(place.station)]; }
-  /// The same node in the zone behind the end of a corner; nothing where the row ends.
+  /// The place of the same node in the zone behind the end of a corner; nothing where the row ends.
   [[nodiscard]] std::optional<CornerPlace> across(CornerPlace const& end) const;
 
  private:

@@ -22,7 +22,7 @@ constexpr double furthest = 0.9;  // of the reach, at which a contact may lie
 constexpr double reach_radii = 3, reach_layers = 4,
                  reach_across = 2;  // of edges, layers, and layers off the other wall
 
-/// From the station before one to that behind it.
+/// The direction of a row at a station, from the one before to that behind it.
 Vec3 along_row(std::vector<Vec3> const& nodes, int number, bool closed) {
   int const n = int(nodes.size());
   int const before = closed ? (number + n - 1) % n : std::max(0, number - 1);

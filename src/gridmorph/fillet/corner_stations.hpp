@@ -26,7 +26,7 @@ class CornerStations {
   [[nodiscard]] CornerStation const& station(std::size_t corner, int station) const {
     return stations_[corner][std::size_t(station)];
   }
-  /// What a result says about balls and ends.
+  /// Fills in what a result says about balls and ends.
   void describe(FilletResult& result) const;
 
  private:

@@ -18,7 +18,8 @@ namespace gridmorph {
 
 namespace {
 
-/// From a wall to where its layers end: the cubic with these directions, as fast at both ends as the chord is long.
+/// The line from a wall to where its layers end: the cubic with these directions, as fast at both ends as the chord is
+/// long.
 struct LayerLine {
   Vec3 foot, off_foot, end, into_end;
 

@@ -12,7 +12,7 @@ namespace gridmorph {
 
 struct FilletOptions {
   std::vector<int> blade, end_wall;  ///< patches
-  /// Of the ball that rolls along the corner, at a point of it [length]; 0: the corner stays sharp there.
+  /// The radius of the ball that rolls along the corner, at a point of it [length]; 0: the corner stays sharp there.
   std::function<double(Vec3 const& corner)> radius;
   /// Layers of cells off the blade and off the end wall that the corner takes; 0: as many as reach the mean
   /// radius and 0.6 of it.
@@ -30,7 +30,7 @@ struct FilletFacts {
   double arc_angle_deg[2] = {0, 0};                ///< smallest and largest of their arcs
   int open_ends = 0;                               ///< nodes at which a fillet runs out
 
-  /// One node of the corner more.
+  /// Takes one more node of the corner into account.
   void add_station(double radius, double half_angle_rad);
 };
 

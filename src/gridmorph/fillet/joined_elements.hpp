@@ -9,7 +9,8 @@
 
 namespace gridmorph {
 
-/// Refers to its mesh and topology. A place is known by the smallest number among its nodes (nodes_at_one_place()).
+/// The elements of a mesh around places that zones share. Refers to its mesh and topology. A place is known by the
+/// smallest number among its nodes (nodes_at_one_place()).
 class JoinedElements {
  public:
   JoinedElements(Mesh const& mesh, UnstructuredTopology const& topology);
@@ -21,7 +22,7 @@ class JoinedElements {
   [[nodiscard]] std::vector<Index32> nodes_at(Index32 place) const;
   /// Elements that have a place among their corners, ascending in each zone.
   [[nodiscard]] std::vector<Index32> around(Index32 place) const;
-  /// Those that have all of these.
+  /// The elements that have all of some places among their corners.
   [[nodiscard]] std::vector<Index32> with(std::span<Index32 const> places) const;
   [[nodiscard]] bool has(Index32 element, Index32 place) const;
   /// The corner of an element at a place; -1: none.

@@ -20,7 +20,7 @@ constexpr std::array<double, 2> room{1.0, 0.6};
 int least_left(int cells) { return std::max(1, cells / 6); }
 constexpr double flattest = 5;  // how much wider than high the layers in the corner may be, and the other way round
 
-/// Of layers off a wall, counted along the line of the other one.
+/// The most layers off a wall that there is room for, counted along the line of the other one.
 int most_layers(WallSheets const& sheets, std::vector<CornerFrame> const& corners, int wall, int asked) {
   int most = std::numeric_limits<int>::max();
   CornerFrame const* thinnest = nullptr;

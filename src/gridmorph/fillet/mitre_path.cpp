@@ -75,7 +75,7 @@ class PathFinder {
   [[nodiscard]] Index32 place(Index32 node) const { return lattice_.elements().place(node); }
   [[nodiscard]] Vec3 position(Index32 node) const { return lattice_.elements().mesh().coordinates[node]; }
 
-  /// Along both walls, from the root edge on.
+  /// Measures the heights of layers along both walls, from the root edge on.
   void measure(std::size_t k) {
     double const far = looked_at * *std::max_element(reach_.radius.begin(), reach_.radius.end());
     for (int wall = 0; wall < 2; ++wall) {
@@ -99,7 +99,7 @@ class PathFinder {
     }
   }
 
-  /// The same steps everywhere, from the geometric means of heights.
+  /// The steps of the mitre, the same everywhere, from the geometric means of heights.
   [[nodiscard]] std::vector<Step> choose() const {
     std::array<std::vector<double>, 2> mean;
     for (std::size_t wall = 0; wall < 2; ++wall) {

@@ -23,19 +23,20 @@ struct Mitre {
   std::array<int, 2> layers{0, 0};  ///< that it passes off the blade and the end wall; of lines to be cut
 };
 
-/// What it has to reach.
+/// What a mitre has to reach.
 struct MitreReach {
   std::span<double const> radius;  ///< per place of the line
   std::array<int, 2> layers{
       0, 0};  ///< off the blade and the end wall; 0, 0: as many as reach 0.8 radii along all of the line
 };
 
-/// Of a line whose edges have one hexahedron each: diagonals of cells and, where layers of one wall are thinner than
-/// those of the other, edges in between, so that it stays about as far from one wall as from the other; the same steps
-/// all along the line, as the cells that are cut have to follow on one another. It ends where there are no hexahedra
-/// any more.
+/// The mitre of a line whose edges have one hexahedron each: diagonals of cells and, where layers of one wall are
+/// thinner than those of the other, edges in between, so that it stays about as far from one wall as from the other;
+/// the same steps all along the line, as the cells that are cut have to follow on one another. It ends where there are
+/// no hexahedra any more.
 ///
-/// Of a line with several elements around each edge: the grid line that leaves the walls there, where there is one.
+/// That of a line with several elements around each edge: the grid line that leaves the walls there, where there is
+/// one.
 Mitre find_mitre(CornerLattice const& lattice, WallEdges const& edges, RootLine const& line, MitreReach const& reach);
 
 }  // namespace gridmorph

@@ -21,7 +21,8 @@ struct Ball {
 
   /// Length of the arc between its middle and a contact.
   [[nodiscard]] double half_arc() const { return radius * half_angle_rad; }
-  /// From the centre to the arc, unit; `share`: of the way from its middle to the contact with wall 0 or 1.
+  /// The direction from the centre to the arc, unit; `share`: of the way from its middle to the contact with wall 0 or
+  /// 1.
   [[nodiscard]] Vec3 to_arc(int wall, double share) const;
   [[nodiscard]] Vec3 contact(int wall) const { return centre + radius * to_contact[std::size_t(wall)]; }
 };

@@ -31,7 +31,7 @@ bool share_quadrilateral(JoinedElements const& elements, Index32 a, Index32 b) {
   return common == 4;
 }
 
-/// As long as the face's area, whichever way its element is numbered.
+/// The normal of a face into the mesh, as long as the face's area, whichever way its element is numbered.
 Vec3 inward_normal(Mesh const& mesh, std::span<Index32 const> nodes, Index32 element) {
   Vec3 middle, centre, normal;
   for (Index32 const n : nodes) middle += (1 / double(nodes.size())) * mesh.coordinates[n];

@@ -51,14 +51,14 @@ struct RootLine {
 /// Whether a boundary face is of neither wall and no interface of two zones.
 bool is_foreign(JoinedElements const& elements, WallEdges const& edges, Index face);
 
-/// Those that lie across an end of an open line (0: its first place, 1: its last one), which the line ends on; none
-/// where it ends inside the mesh, as at the edges of a blade.
+/// The boundary faces that lie across an end of an open line (0: its first place, 1: its last one), which the line ends
+/// on; none where it ends inside the mesh, as at the edges of a blade.
 std::vector<Index32> faces_across_end(JoinedElements const& elements, WallEdges const& edges, RootLine const& line,
                                       int end);
 
-/// All of them. A line ends where three meet, and where the elements along it do not follow on one another, as at the
-/// edges of a blade in an H mesh. Throws MeshError where the walls do not meet, and for elements with a face on either
-/// wall that are no hexahedra. Cost O(faces of the walls).
+/// All root lines of two walls. A line ends where three meet, and where the elements along it do not follow on one
+/// another, as at the edges of a blade in an H mesh. Throws MeshError where the walls do not meet, and for elements
+/// with a face on either wall that are no hexahedra. Cost O(faces of the walls).
 std::vector<RootLine> find_root_lines(JoinedElements const& elements, WallEdges const& edges);
 
 }  // namespace gridmorph

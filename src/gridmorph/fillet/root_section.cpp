@@ -15,7 +15,7 @@ constexpr double kept = 0.3, stays = 0.9;
 
 /// Radii off the farther wall up to which chosen places are brought to the mitre, and from which on they are not.
 constexpr double brought = 0.15, left = 1.4;
-/// 0: brought to the mitre, 1: left where it is.
+/// The share by which a place is left alone: 0 where it is brought to the mitre, 1 where it stays.
 double left_alone(std::array<double, 2> const& off, double radius) {
   return radius > 0 ? smoothstep((std::max(off[0], off[1]) / radius - brought) / (left - brought)) : 1;
 }

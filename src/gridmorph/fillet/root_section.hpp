@@ -15,10 +15,10 @@ struct CornerPoint {
   std::array<double, 2> along;  ///< the same point along each wall from the corner
 };
 
-/// y over x in straight pieces from (0, 0), both ascending, on with slope 1.
+/// A relation y over x in straight pieces from (0, 0), both ascending, on with slope 1.
 class Relation {
  public:
-  /// Nothing where that would not ascend.
+  /// Adds a point of the relation; nothing where that would not ascend.
   void add(double x, double y);
   [[nodiscard]] double operator()(double x) const;
 
@@ -36,11 +36,11 @@ class MitreRelations {
   MitreRelations() = default;
   MitreRelations(std::vector<MitrePlace> const& places, std::vector<std::array<double, 2>> const& off, double radius);
 
-  /// Of a wall: distance of a layer from it -> its distance from the new wall in the mitre, where lines of the other
-  /// wall come to its first place and where it leaves its last one: a layer may have several.
+  /// The relation of a wall between the distance of a layer from it and its distance from the new wall in the mitre,
+  /// where lines of the other wall come to its first place and where it leaves its last one: a layer may have several.
   [[nodiscard]] Relation const& first(int wall) const { return first_[std::size_t(wall)]; }
   [[nodiscard]] Relation const& last(int wall) const { return last_[std::size_t(wall)]; }
-  /// Of a wall: distance of a line from the other wall -> where it begins on the new wall.
+  /// The relation of a wall between the distance of a line from the other wall and where it begins on the new wall.
   [[nodiscard]] Relation const& start(int wall) const { return start_[std::size_t(wall)]; }
 
  private:
@@ -67,14 +67,14 @@ struct RootSection {
 struct CornerMove {
   Vec3 shift;
   int wall = 0;          ///< the one it belongs to
-  bool on_arc = false;   ///< its foot on the new wall
+  bool on_arc = false;   ///< whether its foot on the new wall is on the arc
   double arc_share = 0;  ///< of the half arc, where its foot is
   double start = 1;      ///< how much nearer to the corner its line begins than before
   double bend = 0;       ///< 0 on the wall, 1 in the mitre
   double still = 1;      ///< 1: too far from the new wall to move
 };
 
-/// Between two sections, `share` of the way from one to the other. Refers to them.
+/// What lies between two sections, `share` of the way from one to the other. Refers to them.
 class BetweenSections {
  public:
   BetweenSections(RootSection const& a, RootSection const& b, double share) : a_(a), b_(b), share_(share) {}
@@ -85,10 +85,10 @@ class BetweenSections {
   [[nodiscard]] double reach() const { return mean(a_.reach, b_.reach); }
 
   [[nodiscard]] CornerPoint point(std::array<double, 2> const& off) const;
-  /// Of a node at `at`; `in_mitre`: find_mitre() chose it. It keeps what it is beside the section, less the nearer it
-  /// comes to the mitre.
+  /// The move of a node at `at`; `in_mitre`: find_mitre() chose it. It keeps what it is beside the section, less the
+  /// nearer it comes to the mitre.
   [[nodiscard]] CornerMove move(Vec3 const& at, CornerPoint const& p, bool in_mitre) const;
-  /// Of the fillet, beside a point: the point of the arc's tube nearest to it across the corner.
+  /// The place on the fillet beside a point: the point of the arc's tube nearest to it across the corner.
   [[nodiscard]] Vec3 on_arc(Vec3 const& p, int wall, double arc_share) const;
   /// The corner's new place.
   [[nodiscard]] Vec3 middle() const;
@@ -96,7 +96,7 @@ class BetweenSections {
  private:
   [[nodiscard]] double mean(double a, double b) const { return a + share_ * (b - a); }
   [[nodiscard]] Vec3 mean(Vec3 const& a, Vec3 const& b) const { return a + share_ * (b - a); }
-  /// As long as the mean of their lengths.
+  /// The direction between two vectors, as long as the mean of their lengths.
   [[nodiscard]] Vec3 turned(Vec3 const& a, Vec3 const& b) const;
   [[nodiscard]] WallPoint wall_at(int w, double s) const;
   struct Arc {

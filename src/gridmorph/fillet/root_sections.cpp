@@ -22,7 +22,7 @@ constexpr double steepest = 0.5;          ///< change of the reach along the cor
 constexpr double filled_already = 0.436;  ///< 25 degrees, by which walls may turn within their reach
 constexpr double same_side = 0.3;         ///< cosine between normals of one side of a blade
 
-/// Of the parabola through a point and those beside it; towards the next one at an end.
+/// The direction of the parabola through a point and those beside it; towards the next one at an end.
 Vec3 tangent(RootLine const& line, std::size_t k, std::vector<Vec3> const& at) {
   std::size_t const n = line.places.size();
   bool const first = k == 0 && !line.closed, last = k + 1 == n && !line.closed;
@@ -32,18 +32,18 @@ Vec3 tangent(RootLine const& line, std::size_t k, std::vector<Vec3> const& at) {
   return unit(norm(behind) * unit(before) + norm(before) * unit(behind));
 }
 
-/// Between walls with these normals, unit.
+/// The angle between walls with these normals, unit.
 double angle_of(Vec3 const& a, Vec3 const& b) { return std::numbers::pi - std::acos(std::clamp(dot(a, b), -1.0, 1.0)); }
 
 Vec3 across(Vec3 const& v, Vec3 const& along) { return unit(v - dot(v, along) * along); }
 
-/// Along a wall away from the other one.
+/// The direction along a wall away from the other one.
 Vec3 up(Vec3 const& along, Vec3 const& own_normal, Vec3 const& other_normal) {
   Vec3 const v = unit(cross(along, own_normal));
   return dot(v, other_normal) < 0 ? -v : v;
 }
 
-/// Of the blade's normal along the line.
+/// How the blade's normal turns along the line, per length.
 std::vector<double> turning_of(WallEdges const& edges, RootLine const& line, std::vector<Vec3> const& at) {
   std::size_t const n = at.size();
   std::vector<double> out;

@@ -13,7 +13,7 @@ namespace gridmorph {
 
 /// Distance of a point from a wall where it has this foot; beyond a rim from the tangent plane there.
 double off_wall(kernels::FacetFoot const& foot, Vec3 const& p);
-/// From two walls.
+/// Distances of a point from two walls.
 std::array<double, 2> off_walls(std::array<FacetSurface const*, 2> const& walls, Vec3 const& p);
 
 /// A point's section: between two of a line.
@@ -22,7 +22,8 @@ struct SectionPlace {
   double share = 0;
 };
 
-/// Of places of the mesh that belong to a place of a line: those of the mitre, and the first ones off a line to be cut.
+/// What is known of places of the mesh that belong to a place of a line: those of the mitre, and the first ones off a
+/// line to be cut.
 struct KnownPlace {
   SectionPlace section;
   bool in_mitre = false;
@@ -44,7 +45,7 @@ class RootSections {
   /// (`blade_normal`: off the blade where the point is, unit, or zero), the last one beyond an end; nothing farther
   /// than `within` from all lines. Cost O(log places).
   [[nodiscard]] std::optional<SectionPlace> find(Vec3 const& p, Vec3 const& blade_normal, double within) const;
-  /// Null: not known.
+  /// What is known of a place; null: nothing.
   [[nodiscard]] KnownPlace const* known(Index32 place) const;
   [[nodiscard]] std::vector<std::vector<RootSection>> const& all() const { return sections_; }
 

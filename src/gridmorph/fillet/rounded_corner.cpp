@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Nodes as triangles without area.
+/// A tree of nodes, as triangles without area.
 TargetTree tree_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> each;
@@ -24,7 +24,7 @@ TargetTree tree_of(Mesh const& mesh, std::vector<Index32> const& nodes) {
   return {std::move(points), std::move(each)};
 }
 
-/// What becomes of a node.
+/// The move of a node.
 struct Move {
   Vec3 shift;        ///< by its section
   Vec3 mended;       ///< from there onto the new wall; zero off the walls
@@ -83,7 +83,8 @@ class CornerRounding {
   }
 
  private:
-  /// Cheaply: what moves is within the reach along a wall, and not much more than a radius off it.
+  /// Whether a point is too far off to move, told cheaply: what moves is within the reach along a wall, and not much
+  /// more than a radius off it.
   [[nodiscard]] bool out_of_reach(Vec3 const& p, SectionPlace const& at) const {
     BetweenSections const section = sections_.between(at);
     return distance(p, section.root()) > 1.1 * std::hypot(section.reach(), 1.5 * section.radius());

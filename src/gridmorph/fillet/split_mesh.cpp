@@ -152,7 +152,7 @@ class Splitter {
     }
   }
 
-  /// Both sides of an interface between two parts.
+  /// Adds both sides of an interface between two parts.
   void add_join(int own, IndexRange const& range, int donor, IndexMap const& map) {
     add_side(own, range, donor, map);
     add_side(donor, map(range), own, map.inverse());

@@ -18,7 +18,7 @@ double roundness(CornerStation const& station) {
   return std::min(1.0, 2 * station.ball().radius / layers);
 }
 
-/// Of a direction: how far it goes along the corner for one unit of length across.
+/// How far a direction goes along the corner for one unit of length across.
 double lean(Vec3 const& direction, Vec3 const& along) {
   double const part = dot(direction, along);
   return part / std::max(0.05, norm(direction - part * along));

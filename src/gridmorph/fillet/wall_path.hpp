@@ -15,7 +15,8 @@ struct WallLine {
   double reach = 0;  ///< arc length beyond which nothing moves
 
   [[nodiscard]] double taken() const { return curve.arc(std::size_t(layers)); }
-  /// 1 at the new corner, 0 from `reach` on: 1 - c1((s - taken) / (reach - taken)), c1(t) = t^2 (3 - 2 t).
+  /// The share of the corner in a node: 1 at the new corner, 0 from `reach` on: 1 - c1((s - taken) / (reach - taken)),
+  /// c1(t) = t^2 (3 - 2 t).
   [[nodiscard]] double share(int node) const;
 };
 
@@ -34,10 +35,10 @@ struct BallRow {
   /// The ball `steps` from one; none beyond an end.
   [[nodiscard]] Ball const* from(int number, int steps) const;
 
-  /// On the fillet: between the arcs of the stations around `station`, at a share of their ways from the middle to wall
-  /// 0 or 1.
+  /// The point on the fillet between the arcs of the stations around `station`, at a share of their ways from the
+  /// middle to wall 0 or 1.
   [[nodiscard]] Vec3 point(double station, int wall, double share) const;
-  /// The normal there, into the mesh; zero where all around is sharp.
+  /// The normal at point(), into the mesh; zero where all around is sharp.
   [[nodiscard]] Vec3 normal(double station, int wall, double share) const;
 };
 
@@ -64,10 +65,10 @@ struct CornerStation {
   [[nodiscard]] bool sharp() const { return ball().radius == 0; }
   /// Finds the edges, once the row is whole.
   void find_edges();
-  /// Of the new corner.
+  /// The place of the middle of the new corner.
   [[nodiscard]] WallPlace middle() const;
-  /// Of a node `layers` or more of a wall. It goes by arc length: with s that of the node, d what the fillet is shorter
-  /// than the corner (edge.arc - edge.way; 0 where it is sharp), g its share,
+  /// The place of a node `layers` or more of a wall. It goes by arc length: with s that of the node, d what the fillet
+  /// is shorter than the corner (edge.arc - edge.way; 0 where it is sharp), g its share,
   ///
   ///     t = (s - d) - g (s_layers - d),
   ///

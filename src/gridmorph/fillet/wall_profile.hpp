@@ -17,14 +17,14 @@ struct WallPoint {
 class WallProfile {
  public:
   WallProfile() = default;
-  /// Along the surface, in the plane across `across`, from `root` in the direction `up`; `normal`: into the mesh at
-  /// `root`, in the plane; all unit. Normals are those of the profile in its plane. Beyond rims it goes on in the
-  /// tangent plane. Cost: some hundred feet.
+  /// The profile along the surface, in the plane across `across`, from `root` in the direction `up`; `normal`: into the
+  /// mesh at `root`, in the plane; all unit. Normals are those of the profile in its plane. Beyond rims it goes on in
+  /// the tangent plane. Cost: some hundred feet.
   WallProfile(FacetSurface const& surface, Vec3 const& root, Vec3 const& across, Vec3 const& up, Vec3 const& normal,
               double length);
 
   [[nodiscard]] double length() const { return step_ * double(points_.size() - 1); }
-  /// Straight on beyond the end.
+  /// The point at a length along the profile; straight on beyond the end.
   [[nodiscard]] WallPoint at(double s) const;
   [[nodiscard]] std::vector<WallPoint> const& points() const { return points_; }
   /// How far along the profile its point nearest to p is; p from the corner. Cost O(points).
@@ -43,8 +43,8 @@ struct SectionCircle {
   std::array<double, 2> contact{0, 0};  ///< along the profiles
 };
 
-/// The first one of a radius that touches both, c(s) = p(s) + r n(s) off the first at the distance r from the second, s
-/// by bisection; nothing where there is none before the end.
+/// The first circle of a radius that touches both profiles, c(s) = p(s) + r n(s) off the first at the distance r from
+/// the second, s by bisection; nothing where there is none before the end.
 std::optional<SectionCircle> circle_between(WallProfile const& first, WallProfile const& second, double radius);
 
 }  // namespace gridmorph

@@ -29,7 +29,8 @@ bool meet(Patch const& one, Patch const& other) {
   return common > 1;
 }
 
-/// The same, on two faces.
+/// Whether two patches of a zone have a line of two nodes or more in common and lie on faces of it across two
+/// directions.
 bool meet_in_corner(Mesh const& mesh, Patch const& one, Patch const& other) {
   return meet(one, other) && face_of(mesh, one).first != face_of(mesh, other).first;
 }

@@ -8,7 +8,7 @@
 
 namespace gridmorph {
 
-/// Which of the two walls.
+/// The two walls of a corner.
 enum class Wall { blade = 0, end_wall = 1 };
 
 /// The first layers of cells off one face of a zone.

@@ -18,7 +18,7 @@ class ArcCurve {
   [[nodiscard]] std::size_t size() const { return arc_.size(); }
   [[nodiscard]] Vec3 const& point(std::size_t k) const { return points_[k]; }
 
-  /// Exactly a point at that point. Cost O(log n).
+  /// The place at the arc length s; exactly a point at that point. Cost O(log n).
   [[nodiscard]] Vec3 at(double s) const;
   [[nodiscard]] Vec3 tangent(double s) const;
 

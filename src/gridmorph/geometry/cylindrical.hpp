@@ -32,13 +32,13 @@ class CylindricalFrame {
  public:
   explicit CylindricalFrame(Axis const& axis)
       : origin_(axis.origin), direction_((1 / norm(axis.direction)) * axis.direction) {}
-  /// Of a linear cascade. Precondition: the pitch is across the axis.
+  /// The frame of a linear cascade, whose blades stand along `pitch`. Precondition: the pitch is across the axis.
   CylindricalFrame(Axis const& axis, Vec3 const& pitch) : CylindricalFrame(axis) {
     pitch_ = (1 / norm(pitch)) * pitch;
     span_ = cross(pitch_, direction_);
     linear_ = true;
   }
-  /// Of a row in a plane across the axis.
+  /// The frame of a row in a plane across the axis.
   static CylindricalFrame in_plane(Axis const& axis) {
     CylindricalFrame out(axis);
     out.plane_ = true;
@@ -49,7 +49,7 @@ class CylindricalFrame {
   [[nodiscard]] bool is_linear() const { return linear_; }
   /// Whether the flow stays in a plane across the axis.
   [[nodiscard]] bool is_plane() const { return plane_; }
-  /// Linear: units along pitch and span.
+  /// Unit vectors along the pitch and the span of a linear cascade.
   [[nodiscard]] Vec3 const& pitch() const { return pitch_; }
   [[nodiscard]] Vec3 const& span() const { return span_; }
 
@@ -102,7 +102,7 @@ class CylindricalFrame {
   }
 
  private:
-  /// Between what components mean in a plane and about the axis.
+  /// Turns components in a plane into those about the axis, and back: in a plane axial and radial change places.
   [[nodiscard]] CylindricalMotion swapped(CylindricalMotion const& m) const {
     return plane_ ? CylindricalMotion{m.radial, m.axial, m.angle_rad} : m;
   }

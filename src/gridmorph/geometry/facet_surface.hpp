@@ -53,11 +53,11 @@ struct FacetSurface {
   /// Diagonal of the box around the points.
   [[nodiscard]] double size() const;
 
-  /// Borrows the tables: valid on the host while this surface lives unchanged.
+  /// The surface as kernels see it. Borrows the tables: valid on the host while this surface lives unchanged.
   [[nodiscard]] kernels::FacetSurfaceView view() const {
     return {{points.data(), facets.data(), boxes.data()}, normals.data(), bends.data()};
   }
-  /// On the host; O(log n) near the surface.
+  /// The point of the surface nearest to p, for host code. Cost O(log n) near the surface.
   [[nodiscard]] kernels::FacetFoot closest_point(Vec3 const& p) const { return view().closest_point(p); }
 };
 

@@ -30,7 +30,7 @@ void check(FacetList const& list) {
       throw MotionError("point " + std::to_string(n + 1) + " of a surface is not finite; correct its coordinates");
 }
 
-/// For every point the one that stands for it: the first in lexicographic order of those that coincide.
+/// The point that stands for each point: the first in lexicographic order of those that coincide.
 std::vector<int> coincident(FacetList const& list, double tolerance) {
   std::size_t const n = list.points.size();
   // Never across more than a tenth of an edge, however small the edges are.
@@ -63,8 +63,8 @@ std::vector<int> coincident(FacetList const& list, double tolerance) {
   return stands_for;
 }
 
-/// Without repeated corners, starting at the lowest number and going towards the lower of its neighbours; fewer than
-/// three corners: empty.
+/// The corners of a facet without repeated ones, starting at the lowest number and going towards the lower of its
+/// neighbours; fewer than three corners: empty.
 std::vector<int> in_order(std::vector<int> corners) {
   for (std::size_t q = 0; q < corners.size() && corners.size() > 1;)
     if (corners[q] == corners[(q + 1) % corners.size()])

@@ -15,8 +15,8 @@ struct PlaneFit {
   bool determined = true;  ///< false when the points lie on one line (or are one): any plane through it fits
 };
 
-/// Least squares: the eigenvector of the smallest eigenvalue of the covariance (exact for points on a
-/// coordinate plane). Precondition: points is not empty. Cost O(points).
+/// The plane by least squares: its normal is the eigenvector of the smallest eigenvalue of the covariance (exact for
+/// points on a coordinate plane). Precondition: points is not empty. Cost O(points).
 PlaneFit fit_plane(std::span<Vec3 const> points);
 
 /// Largest distance of the points from the plane.

@@ -16,7 +16,7 @@ namespace {
 using Point = std::pair<double, double>;
 using Points = std::vector<Point>;
 
-/// Below this number the points are a table somebody wrote, not nodes of a mesh: every one of them is meant.
+/// The number of points below which they are a table somebody wrote, not nodes of a mesh: every one of them is meant.
 constexpr std::size_t least_for_statistics = 16;
 
 double median(std::vector<double>& v) {
@@ -180,8 +180,9 @@ class Slopes {
     return s;
   }
 
-  /// After all(): second derivative at the lower and upper end of each piece: that of the local polynomial where the
-  /// piece is smooth at both ends, otherwise that of the cubic with the same slopes, which the quintic then is.
+  /// What all() leaves open, the second derivative at the lower and upper end of each piece: that of the local
+  /// polynomial where the piece is smooth at both ends, otherwise that of the cubic with the same slopes, which the
+  /// quintic then is.
   std::vector<double> curvatures(std::vector<double> const& slope) const {
     std::vector<double> c;
     for (int i = 0; i + 1 < n_; ++i) {
@@ -318,7 +319,7 @@ class Slopes {
     return most;
   }
 
-  /// By how much the divided difference of point i, a stencil and point j is more than what noise may make of it.
+  /// How much the divided difference of point i, a stencil and point j is more than what noise may make of it.
   double beyond_noise(int i, Stencil const& stencil, int j) const {
     double value = 0, noise = 0;
     auto const term = [&](int k) {
@@ -420,7 +421,7 @@ class Slopes {
   std::vector<bool> kink_;
 };
 
-/// As many buckets as pieces (see ProfileView::piece).
+/// The first piece of each bucket, of which there are as many as pieces (see ProfileView::piece).
 std::vector<int> bucket_pieces(std::vector<kernels::ProfileKnot> const& knots) {
   int const pieces = int(knots.size()) - 1;
   double const first = knots.front().axial, last = knots.back().axial;

@@ -12,7 +12,7 @@ struct RigidTransform {
 
   [[nodiscard]] Vec3 operator()(Vec3 const& x) const;
   [[nodiscard]] RigidTransform inverse() const;
-  /// First this, then next.
+  /// The transform that applies first this one, then `next`.
   [[nodiscard]] RigidTransform then(RigidTransform const& next) const;
 };
 

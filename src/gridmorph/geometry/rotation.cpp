@@ -19,7 +19,7 @@ RigidTransform RigidTransform::then(RigidTransform const& next) const {
 
 namespace {
 
-/// None: all alike.
+/// The weight of point n; all are alike where none are given.
 double weight_of(std::span<double const> weights, std::size_t n) { return weights.empty() ? 1 : weights[n]; }
 
 Vec3 mean_of(std::span<Vec3 const> points, std::span<double const> weights) {

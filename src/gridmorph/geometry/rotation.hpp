@@ -29,14 +29,15 @@ struct RigidFit {
   Mat3 rotation;
 };
 
-/// Of a point at x.
+/// The displacement that the fitted motion gives a point at x.
 inline Vec3 displacement(RigidFit const& fit, Vec3 const& x) {
   Vec3 const arm = x - fit.from;
   return (fit.rotation * arm - arm) + (fit.to - fit.from);
 }
 
-/// The same fit; nothing where it is not the only one (points on a line), and for a motion that mirrors the points.
-/// `weights`: how much each point counts, none negative and some positive; all alike where there are none.
+/// The rigid motion that fits best to what takes points from `before` to `after`; nothing where it is not the only one
+/// (points on a line), and for a motion that mirrors the points. `weights`: how much each point counts, none negative
+/// and some positive; all alike where there are none.
 std::optional<RigidFit> rigid_fit(std::span<Vec3 const> before, std::span<Vec3 const> after,
                                   std::span<double const> weights = {});
 

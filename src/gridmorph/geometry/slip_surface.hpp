@@ -44,7 +44,7 @@ struct RevolutionProfile {
   /// Outside the knots the end slope is continued.
   [[nodiscard]] double operator()(double axial_position) const { return view()(axial_position); }
 
-  /// Borrows the tables: valid on the host while this profile lives unchanged.
+  /// The profile as kernels see it. Borrows the tables: valid on the host while this profile lives unchanged.
   [[nodiscard]] kernels::ProfileView view() const {
     return {knots.data(), int(knots.size()), bucket_piece.data(), std::max(0, int(bucket_piece.size()) - 1)};
   }
@@ -55,10 +55,10 @@ struct TurnedProfile {
   RevolutionProfile profile;
   kernels::MeridionalFrame frame;
 
-  /// Of points along one connected wall: radius over axial position where that is a function and not steep; otherwise
-  /// axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in which the
-  /// slopes are smallest. Throws MotionError when there is no such frame: a wall that turns by 180 degrees, two
-  /// surfaces, or no surface of revolution. Cost O(n log n).
+  /// The profile of points along one connected wall: radius over axial position where that is a function and not steep;
+  /// otherwise axial position over radius (walls across the axis), or in the frame, turned in steps of 15 degrees, in
+  /// which the slopes are smallest. Throws MotionError when there is no such frame: a wall that turns by 180 degrees,
+  /// two surfaces, or no surface of revolution. Cost O(n log n).
   static TurnedProfile from_points(std::vector<std::pair<double, double>> const& axial_radius);
 };
 
@@ -75,7 +75,8 @@ struct SlipSurface {
   kernels::MeridionalFrame frame{};  ///< of the profile of a meridional surface
   FacetSurface facets{};             ///< kind facets only
 
-  /// For host code; borrows profile and facets: valid while this surface lives unchanged.
+  /// The surface as kernels see it, for host code. It borrows profile and facets: valid while this surface lives
+  /// unchanged.
   [[nodiscard]] kernels::SlipSurfaceView view() const {
     return {kind, origin, direction, profile.view(), size, baseline_deviation, frame, facets.view()};
   }

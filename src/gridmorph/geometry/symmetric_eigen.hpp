@@ -13,14 +13,15 @@ namespace gridmorph {
 template <std::size_t N>
 using SmallMatrix = std::array<std::array<double, N>, N>;
 
-/// Greatest value first, equal ones in the order of their axes; vector[k] belongs to value[k] and has length 1.
+/// Eigenvalues and eigenvectors: greatest value first, equal ones in the order of their axes; vector[k] belongs to
+/// value[k] and has length 1.
 template <std::size_t N>
 struct SymmetricEigen {
   std::array<double, N> value{};
   SmallMatrix<N> vector{};
 };
 
-/// kernels::diagonalise(), in order.
+/// Eigenvalues and eigenvectors as kernels::diagonalise() finds them, in order.
 template <std::size_t N>
 SymmetricEigen<N> symmetric_eigen(SmallMatrix<N> const& matrix) {
   SymmetricEigen<N> out;

@@ -36,7 +36,7 @@ class TargetTree {
 
   /// The nearest point; of equally near ones that of the triangle with the smaller number.
   [[nodiscard]] Hit closest(Vec3 const& p) const;
-  /// The same among points nearer than a distance; cheap where there is none.
+  /// The nearest point among those nearer than a distance; cheap where there is none.
   [[nodiscard]] Hit closest_within(Vec3 const& p, double distance) const;
   /// The nearest point on a triangle that `accept` says yes to.
   [[nodiscard]] Hit closest_of(Vec3 const& p, std::function<bool(int triangle)> const& accept) const;

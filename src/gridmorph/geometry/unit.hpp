@@ -6,7 +6,7 @@
 
 namespace gridmorph {
 
-/// v / |v|.
+/// The unit vector v / |v|.
 inline Vec3 unit(Vec3 const& v) { return (1 / norm(v)) * v; }
 
 }  // namespace gridmorph

@@ -29,13 +29,13 @@ struct ElementShape {
   int corners;
 };
 
-/// nullptr for shapes that are not read.
+/// The shape with an ElementType_t number; nullptr for shapes that are not read.
 ElementShape const* element_shape(std::int64_t number);
 
 /// Appends the faces of one element; `nodes` are its numbers in the mesh.
 void add_faces(ElementShape const& shape, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces);
 
-/// Those that belong to one element alone, in their order. Cost O(n log n).
+/// The faces that belong to one element alone, in their order. Cost O(n log n).
 std::vector<ElementFace> outer_faces(std::vector<ElementFace> const& faces);
 
 /// Appends the face as linear triangles and quadrilaterals that use each of its nodes.

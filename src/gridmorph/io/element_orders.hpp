@@ -20,12 +20,12 @@ struct FileShape {
   std::span<std::uint8_t const> order = {};
 };
 
-/// By the element types of Gmsh (reference manual, "Node ordering"), first and second order.
+/// The shape of an element type of Gmsh (reference manual, "Node ordering"), first and second order.
 FileShape gmsh_shape(std::int64_t type);
-/// By the cell types of VTK (vtkCellType.h and the classes of cells), first and second order.
+/// The shape of a cell type of VTK (vtkCellType.h and the classes of cells), first and second order.
 FileShape vtk_shape(std::int64_t type);
 
-/// The other way round: nodes of a prism in SIDS order, first or second, with bottom and top seen from the other side.
+/// Turns over the nodes of a prism in SIDS order, first or second, with bottom and top seen from the other side.
 void turn_prism(std::span<Index32> nodes);
 
 /// Bottom triangles of prisms point inwards in CGNS; programs that write VTK's cell types do it either way. Turns over

@@ -33,8 +33,8 @@ bool has_polyhedra(Mesh const& mesh, Zone const& zone) {
   return first != of.end() && *first < zone.first_element + zone.n_elements;
 }
 
-/// At most this many numbers are in its sections by faces: of each side its nodes, an offset and the number that its
-/// element has of it.
+/// The number of numbers that are in a zone's sections by faces, at most: of each side its nodes, an offset and the
+/// number that its element has of it.
 std::uint64_t numbers_by_faces(Mesh const& mesh, Zone const& zone) {
   std::uint64_t out = 0;
   std::array<Index32, max_face_corners> room{};

@@ -25,24 +25,25 @@ class ElementZoneWriter {
   ElementZoneWriter(cgns::File& file, Mesh const& mesh, WriteOptions const& options);
 
   void begin();
-  /// values: x, y, z of this zone's nodes. Throws IoError for elements and faces that cannot be written.
+  /// Writes zone z. values: x, y, z of its nodes. Throws IoError for elements and faces that cannot be written.
   void zone(int z, std::array<double const*, 3> const& values);
 
  private:
   double base(std::string const& name);
   void coordinates(Zone const& zone, double zone_id, std::array<double const*, 3> const& values);
-  /// One section: `types` of its elements and their 1-based nodes, one after another. MIXED unless all types are equal.
+  /// Writes one section: `types` of its elements and their 1-based nodes, one after another. MIXED unless all types are
+  /// equal.
   void section(double zone_id, std::string const& name, Index first, std::vector<std::int32_t> const& types,
                std::vector<Index> const& start, std::vector<std::int32_t> const& nodes);
-  /// Returns the next element number.
+  /// Writes the elements of a zone; returns the next element number.
   Index elements(Zone const& zone, double zone_id, std::set<std::string>& taken);
   ZoneFaces const& faces_of(Zone const& zone);
-  /// The same for a zone with polyhedra.
+  /// Writes the elements of a zone with polyhedra; returns the next element number.
   Index elements(Zone const& zone, ZoneFaces const& faces, double zone_id, std::set<std::string>& taken);
   double elements_node(double zone_id, std::string const& name, std::int32_t type, Index first, Index size);
   void family_names(double parent, std::vector<std::string> const& families);
   void boundary(int z, ZoneFaces const* faces, double zone_id, Index next, std::set<std::string>& sections);
-  /// Where the faces of a patch are, by their numbers.
+  /// Writes where the faces of a patch are, by their numbers.
   void listed_faces(Patch const& patch, ZoneFaces const& faces, double bc_id);
   void points(double parent, char const* name, std::vector<Index32> const& nodes, Zone const& zone);
   void connections(int z, double zone_id);
@@ -55,7 +56,7 @@ class ElementZoneWriter {
   std::map<Index, ZoneFaces> faces_;  ///< by first elements, which zones may share
 };
 
-/// More than the file will take.
+/// The bytes that the elements of a mesh take in a file; somewhat more than the file will take.
 std::uint64_t bytes_of_elements(Mesh const& mesh);
 
 }  // namespace gridmorph::io

@@ -108,14 +108,15 @@ bool is_binary_stl(std::string_view head, std::uintmax_t size) {
   return n > 0 && size == 84 + 50 * std::uintmax_t(n);
 }
 
-/// "(0 ", "(2 3)", "(1 "...: a Fluent file is a list of sections that begin with their number.
+/// Whether a text begins as a Fluent file does, "(0 ", "(2 3)", "(1 "...: it is a list of sections that begin with
+/// their number.
 bool is_fluent(std::string_view text) {
   if (!text.starts_with('(')) return false;
   text = without_blanks(text.substr(1));
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
 }
 
-/// Up to the end of the line, without it and blanks around it.
+/// The text up to the end of its line, without it and blanks around it.
 std::string_view first_line(std::string_view text) {
   auto const line = without_blanks(text.substr(0, text.find('\n')));
   return line.substr(0, line.find_last_not_of(" \t\r\n") + 1);
@@ -126,7 +127,7 @@ std::string_view after_line(std::string_view text) {
   return end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
 }
 
-/// From the first line on that says something: no blank one, and none that begins as comments do.
+/// The text from the first line on that says something: no blank one, and none that begins as comments do.
 std::string_view without_comments(std::string_view text, std::string_view comment) {
   while (!text.empty() && (first_line(text).empty() || first_line(text).starts_with(comment))) text = after_line(text);
   return text;

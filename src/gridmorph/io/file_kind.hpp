@@ -9,7 +9,7 @@ namespace gridmorph {
 /// Formats of meshes that are read and written.
 enum class MeshFormat { cgns, plot3d, su2, openfoam, gmsh, vtk, ugrid };
 
-/// "CGNS", "PLOT3D", "SU2", "OpenFOAM", "Gmsh", "VTK", "UGRID".
+/// The name of a format: "CGNS", "PLOT3D", "SU2", "OpenFOAM", "Gmsh", "VTK", "UGRID".
 std::string_view to_string(MeshFormat format);
 
 /// Whether files of a format have a place for fields of the nodes and cells.
@@ -18,8 +18,8 @@ constexpr bool holds_fields(MeshFormat format) { return format == MeshFormat::cg
 /// Whether a series of meshes over time goes into one output of a format.
 constexpr bool holds_series(MeshFormat format) { return format == MeshFormat::cgns || format == MeshFormat::openfoam; }
 
-/// By the first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the others counts as
-/// PLOT3D. Throws IoError as refuse_other_format() does.
+/// The format of a file by its first bytes, of UGRID by the ending, of a folder by what is in it; what is none of the
+/// others counts as PLOT3D. Throws IoError as refuse_other_format() does.
 MeshFormat mesh_format(std::string const& path);
 
 /// Whether there is a file or folder of that name, or an OpenFOAM case whose .foam file nobody made or whose latest

@@ -9,8 +9,8 @@
 
 namespace gridmorph::io {
 
-/// Equal for two paths that are one file or folder, or would be: device and inode of what is there (links and hard
-/// links are the same file), else the canonical path.
+/// A name of what a path leads to, equal for two paths that are one file or folder, or would be: device and inode of
+/// what is there (links and hard links are the same file), else the canonical path.
 std::string identity_of(std::filesystem::path const& path);
 
 /// The one list of files that have been opened to be read while this lives. Readers fill it themselves, by note(), also

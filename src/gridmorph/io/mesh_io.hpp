@@ -108,7 +108,7 @@ class MeshFileWriter {
   std::unique_ptr<State> state_;
 };
 
-/// What the values of a field are, for their DataClass_t.
+/// What the values of a field are, from which their DataClass_t and units follow.
 enum class FieldUnit { number, degree };
 
 /// One value per node, numbered as Mesh::coordinates.

@@ -84,7 +84,7 @@ std::vector<ZoneSolutions> zone_solutions(cgns::File const& file, cgns::Layout c
   return out;
 }
 
-/// Of the whole zone, at this location, with room for what is to be added.
+/// Whether a solution is of the whole zone, at this location, with room for what is to be added.
 bool SolutionWriter::fits(Node const& solution, std::string const& location) const {
   if (solution.linked) return false;
   Node const* at = solution.labelled("GridLocation_t");

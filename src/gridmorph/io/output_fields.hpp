@@ -30,7 +30,8 @@ struct ZoneSolutions {
   std::array<cgns::Node, 3> coordinate = {};  ///< arrays; empty where absent
 };
 
-/// Of every zone of the layout. To be called before anything is written: the tree of a file in writing cannot be read.
+/// The solutions of every zone of the layout. To be called before anything is written: the tree of a file in writing
+/// cannot be read.
 std::vector<ZoneSolutions> zone_solutions(cgns::File const& file, cgns::Layout const& layout);
 
 /// Adds arrays to the solution of a zone at one location. Viewers read one solution per location, the first, or those
@@ -45,8 +46,8 @@ class SolutionWriter {
                  std::string const& own_name, std::string const& location, std::vector<Index> dimensions,
                  std::vector<std::string> const& names);
   void add(std::string const& name, double const* values, FieldUnit unit) const;
-  /// The same for a difference of coordinates: data class, units and conversion as those of the coordinate, whose
-  /// array, grid, zone or base says them.
+  /// Adds a difference of coordinates: data class, units and conversion as those of the coordinate, whose array, grid,
+  /// zone or base says them.
   void add_displacement(std::string const& name, double const* values, int component) const;
 
  private:

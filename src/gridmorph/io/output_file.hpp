@@ -64,8 +64,8 @@ class OutputFiles {
   /// The next one, to be filled; throws as OutputFile does.
   OutputFile& add(std::string const& output) { return files_.emplace_back(output); }
   [[nodiscard]] std::size_t size() const { return files_.size(); }
-  /// In the order in which they came: what names others comes last. Where one cannot be put in place, what was in the
-  /// place of those before it comes back. Throws MachineError.
+  /// Puts all files in their places, in the order in which they came: what names others comes last. Where one cannot be
+  /// put in place, what was in the place of those before it comes back. Throws MachineError.
   void commit();
 
  private:
@@ -76,8 +76,9 @@ class OutputFiles {
 /// Does only what signal handlers may.
 void remove_pending_files();
 
-/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of all outputs that are not committed, and then
-/// end the process as they would have without. For programs, not for libraries; a signal that is ignored stays ignored.
+/// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files of all outputs that are not committed from now on, and
+/// then end the process as they would have without. For programs, not for libraries; a signal that is ignored stays
+/// ignored.
 void remove_pending_on_signals();
 
 }  // namespace gridmorph::io

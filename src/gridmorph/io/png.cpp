@@ -13,7 +13,7 @@ namespace gridmorph::io {
 
 namespace {
 
-/// CRC-32 of the standard's annex D.
+/// The CRC-32 of the standard's annex D.
 std::uint32_t png_checksum(std::string_view bytes) {
   static std::array<std::uint32_t, 256> const table = [] {
     std::array<std::uint32_t, 256> out{};

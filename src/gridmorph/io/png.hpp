@@ -26,7 +26,7 @@ struct Picture {
 /// built without it.
 std::string png_bytes(Picture const& picture);
 
-/// The same as a URI that pages can hold: "data:image/png;base64,...".
+/// A picture as a PNG in a URI that pages can hold: "data:image/png;base64,...".
 std::string png_data_uri(Picture const& picture);
 
 }  // namespace gridmorph::io

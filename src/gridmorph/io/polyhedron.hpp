@@ -17,9 +17,9 @@ class ElementsByFaces {
 
   /// A face of the element to come; `outward`: whether its normal, right-handed around its nodes, points out of it.
   void add_face(std::span<Index32 const> nodes, bool outward);
-  /// Of the element to come.
+  /// The number of faces so far of the element to come.
   [[nodiscard]] std::size_t n_faces() const { return n_faces_; }
-  /// Appends it to the last zone of the mesh, under its number in the file.
+  /// Appends the element to the last zone of the mesh, under its number in the file.
   void end_element(std::int64_t file_number);
 
  private:

@@ -6,7 +6,7 @@
 
 namespace gridmorph::io {
 
-/// At most 40 characters; what cannot be printed as '?'.
+/// The text as messages can show it: at most 40 characters, what cannot be printed as '?'.
 inline std::string printable(std::string_view text) {
   constexpr std::size_t most = 40;
   std::string out(text.substr(0, most));

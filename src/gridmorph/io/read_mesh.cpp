@@ -28,7 +28,7 @@ std::string_view to_string(FileFormat format) { return format == FileFormat::cgn
 
 namespace {
 
-/// Unstructured where one zone is.
+/// The kind of mesh in a CGNS file: unstructured where one zone is.
 MeshKind kind_of(cgns::File const& file, cgns::Node const& tree, std::vector<std::string> const& leave_out) {
   for (auto const* base : tree.all("CGNSBase_t"))
     for (auto const* zone : base->all("Zone_t"))

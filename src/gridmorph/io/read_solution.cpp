@@ -31,7 +31,7 @@ struct StoredZone {
     for (int a = 0; a < 3; ++a) out *= low[a] + core[a] + high[a];
     return out;
   }
-  /// Without rind planes.
+  /// The values of the zone out of all that are stored: without rind planes.
   [[nodiscard]] std::vector<double> inner(std::vector<double> const& all) const {
     std::vector<double> out;
     out.reserve(std::size_t(core[0] * core[1] * core[2]));

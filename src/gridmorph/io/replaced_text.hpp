@@ -22,7 +22,7 @@ class ReplacedText {
   void replace_raw(std::size_t at, double to, bool swapped);
   void replace_raw(std::size_t at, float to, bool swapped);
 
-  /// All of it; what comes after is undefined.
+  /// Takes the whole text out; the object is of no use after that.
   std::string take();
 
  private:

@@ -65,7 +65,7 @@ class FieldsWriter {
     }
   }
 
-  /// Of an array with a value for each node (less: 0) or each cell (1) of a zone.
+  /// The dimensions of an array with a value for each node (less: 0) or each cell (1) of a zone.
   [[nodiscard]] std::vector<Index> sizes(std::size_t z, Index less) const {
     auto const& zone = layout_.zones[z];
     if (!zone.is_block()) return {less == 0 ? mesh_.zones[z].size() : mesh_.zones[z].n_elements};

@@ -31,7 +31,7 @@ class MeshWriter {
     file_.create(file_.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", "R4", {1}, &version);
   }
 
-  /// values: of this zone's nodes.
+  /// Writes zone z. values: x, y, z of its nodes.
   void zone(int z, std::array<double const*, 3> const& values) {
     auto const& zone = mesh_.zones[z];
     if (mesh_.dimension == 2 && zone.extent[2] != 2)
@@ -52,7 +52,7 @@ class MeshWriter {
   }
 
  private:
-  /// "Base/Zone" in a mesh of several bases, otherwise "Zone" in a base called "Base".
+  /// The names of base and zone: "Base/Zone" in a mesh of several bases, otherwise "Zone" in a base called "Base".
   static std::pair<std::string, std::string> split(std::string const& zone_name) {
     auto const slash = zone_name.find('/');
     if (slash == std::string::npos) return {"Base", zone_name};
@@ -173,7 +173,8 @@ class MeshWriter {
   std::map<std::string, std::set<std::string>> family_types_;  ///< BC types of the patches a family comes first for
 };
 
-/// More than the file will take: both formats spend one to three kilobytes on a node and its little data.
+/// The bytes that a file needs, more than it will take: both formats spend one to three kilobytes on a node and its
+/// little data.
 std::uint64_t bytes_needed(Mesh const& mesh) {
   std::uint64_t nodes = 16 + 3 * mesh.families.size();
   for (auto const& patch : mesh.patches) nodes += 4 + 3 * patch.families.size();

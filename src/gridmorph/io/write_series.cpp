@@ -133,7 +133,7 @@ struct SeriesWriter::Impl {
 
 namespace {
 
-/// One CGNS file.
+/// A series in one CGNS file.
 struct CgnsSeries final : SeriesWriter::Impl {
   io::OutputFile target;
   std::optional<cgns::File> file;

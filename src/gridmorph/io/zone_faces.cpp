@@ -15,7 +15,7 @@ std::vector<Index32> ascending(std::span<Index32 const> nodes) {
   return out;
 }
 
-/// The same for the same nodes in any order; others may share it.
+/// A key that is the same for the same nodes in any order; others may share it.
 std::uint64_t key_of(std::span<Index32 const> nodes) {
   std::uint64_t sum = 0, product = 1;
   for (Index32 const n : nodes) {

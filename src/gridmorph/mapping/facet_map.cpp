@@ -24,7 +24,7 @@ using mapping::FacetShape;
 constexpr std::size_t most_problems = 10;
 /// An element whose area is below this share of its longest side squared is a line.
 constexpr double no_area = 1e-12;
-/// Beyond an edge by less than this share of the element is rounding.
+/// The share of an element by less than which a place beyond an edge is on it, but for rounding.
 constexpr double at_the_edge = 1e-9;
 
 std::vector<Vec3> corners_of(StructuralModel const& model, StructuralFacet const& facet) {

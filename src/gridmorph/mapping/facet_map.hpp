@@ -31,8 +31,8 @@ class FacetMap {
   FacetMap& operator=(FacetMap&&) noexcept;
 
   [[nodiscard]] Stencil stencil(Vec3 const& position) const { return stencil(position, position); }
-  /// By the element that is closest to `anchor`: where elements meet at an angle the field jumps between their sides by
-  /// the offset, not within one.
+  /// The stencil by the element that is closest to `anchor`: where elements meet at an angle the field jumps between
+  /// their sides by the offset, not within one.
   [[nodiscard]] Stencil stencil(Vec3 const& position, Vec3 const& anchor) const;
 
  private:

@@ -53,7 +53,7 @@ class HeldIterations {
   }
 
  private:
-  /// Those that got there.
+  /// Iterates on single elements; returns those positions that got there.
   [[nodiscard]] std::vector<Stuck*> iterate_on_elements(std::vector<Stuck*> open) const {
     std::vector<Stuck*> there;
     for (int k = 0; k < most_ && !open.empty(); ++k) {

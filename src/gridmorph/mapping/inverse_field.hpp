@@ -19,8 +19,8 @@ struct InverseReport {
   double one_step = 0;       ///< the same of X = x - u(x), the first order [length]
   Vec3 worst_of_one_step{};  ///< where that is
   Index held = 0;            ///< positions whose iterations went to and fro between elements, and were held on one
-  /// By how much u differs there from one element to the next, where no place has a residual within the tolerance
-  /// [length].
+  /// How much u differs at these positions from one element to the next, where no place has a residual within the
+  /// tolerance [length].
   double jump = 0;
 };
 
@@ -36,14 +36,14 @@ struct InverseReport {
 /// that the field itself leaves.
 class InverseField {
  public:
-  /// u at places; `iterates`: these are no nodes, and no report counts them.
+  /// Evaluates u at places; `iterates`: these are no nodes, and no report counts them.
   using Field = std::function<void(std::span<Vec3 const> places, std::span<Vec3> displacement, bool iterates)>;
 
-  /// u at places, each by the element, or the points, that its anchor, a place nearby, is mapped from.
+  /// Evaluates u at places, each by the element, or the points, that its anchor, a place nearby, is mapped from.
   using HeldField =
       std::function<void(std::span<Vec3 const> places, std::span<Vec3 const> anchors, std::span<Vec3> displacement)>;
 
-  /// source: for messages. tolerance: > 0 [length].
+  /// Inverts to within a tolerance, > 0 [length]. source: for messages.
   InverseField(std::string source, double tolerance, int most_iterations);
 
   /// displacement[n] = X - x for x = points[n]. Equal points get equal results. Throws MotionError naming a position
@@ -56,7 +56,8 @@ class InverseField {
   [[nodiscard]] double tolerance() const { return tolerance_; }
 
  private:
-  /// `earlier`: the residual eight iterations before, where it did not get smaller.
+  /// Throws the error about a place whose iterations do not end. `earlier`: the residual eight iterations before, where
+  /// it did not get smaller.
   [[noreturn]] void refuse(Vec3 const& x, double residual, int iterations, double earlier) const;
 
   std::string source_;

@@ -40,14 +40,14 @@ class ModalField {
   /// Throws MotionError as PointField does.
   void at(double periods, std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
           bool iterates = false) const;
-  /// PointField::held(), summed.
+  /// The sum of PointField::held() over the models.
   void held(double periods, std::span<double const> factors, std::span<Vec3 const> points,
             std::span<Vec3 const> anchors, std::span<Vec3> displacement) const;
   void at(double periods, std::span<Vec3 const> points, std::span<Vec3> displacement) const {
     at(periods, {}, points, displacement);
   }
 
-  /// One per different model, for reports.
+  /// The fields, one per different model, for reports.
   [[nodiscard]] std::vector<std::shared_ptr<PointField const>> const& fields() const { return fields_; }
   [[nodiscard]] std::size_t n_modes() const { return modes_.size(); }
   [[nodiscard]] std::size_t n_loads() const { return loads_.size(); }
@@ -60,7 +60,7 @@ class ModalField {
     bool complex = false;
     double amplitude = 1, harmonic = 0, phase_turns = 0;
   };
-  /// Of every field of every model at that time.
+  /// The factors of every field of every model at that time.
   [[nodiscard]] std::vector<std::vector<double>> factors_at(double periods, std::span<double const> loads) const;
 
   std::vector<std::shared_ptr<PointField const>> fields_;

@@ -45,7 +45,7 @@ std::optional<std::size_t> column_of(std::string_view field) {
   return std::nullopt;
 }
 
-/// What the lines of one file look like.
+/// The layout of the lines of one file: their separator and columns.
 struct Layout {
   char separator = ',';
   std::array<std::size_t, n_known> column{0, 1, 2, 3, 4, 5, absent, absent, absent, absent};

@@ -21,7 +21,7 @@ struct PointCloud {
   char const* counted_in = ":";    ///< between source and line in messages: ":" for lines, ", node " in CGNS files
 
   [[nodiscard]] std::size_t size() const { return position.size(); }
-  /// "blade.csv:14"
+  /// Where a point stands in its file: "blade.csv:14".
   [[nodiscard]] std::string where(std::size_t point) const { return source + counted_in + std::to_string(line[point]); }
 };
 
@@ -35,7 +35,7 @@ struct PointCloud {
 /// read and values that are not finite; at most the first ten problems are listed. Cost O(size of the file).
 PointCloud read_point_cloud(std::filesystem::path const& path);
 
-/// The same from text; `source` names it in messages.
+/// The point cloud in a text; `source` names it in messages.
 PointCloud parse_point_cloud(std::string_view text, std::string const& source);
 
 }  // namespace gridmorph

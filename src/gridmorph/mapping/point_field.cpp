@@ -22,7 +22,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Nodes that leave-one-out tries.
+/// The number of nodes that leave-one-out tries, at most.
 constexpr std::size_t largest_sample = 2000;
 
 struct PositionHash {
@@ -55,7 +55,7 @@ struct PointField::Impl {
   void scale();
   [[nodiscard]] double largest_displacement() const;
   [[nodiscard]] Box box() const;
-  /// Of what lies elsewhere than the patches.
+  /// Throws the MotionError about a model that lies elsewhere than the patches.
   [[noreturn]] void refuse(std::string const& what) const;
   void judge_distance(Vec3 const& q, double d) const;
   void judge_left_out(MappingDistance const& nodes) const;

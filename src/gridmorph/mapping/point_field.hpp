@@ -36,9 +36,9 @@ struct MappingLimits {
   static constexpr double distance = 0.05;    ///< share of the patches' size
   static constexpr double far_beyond = 0.05;  ///< share of the nodes that lie beyond the edge by more than two spacings
   static constexpr double notable = 0.01;     ///< distances above this share are a warning
-  /// From this share of nodes on that coincide with points the file is a table of the mesh's own nodes: those that are
-  /// far from any point count as if they were beyond the edge. On thin blades, rows of one side alone leave the other
-  /// side without an edge between.
+  /// The share of nodes that coincide with points from which on the file is a table of the mesh's own nodes: those that
+  /// are far from any point count as if they were beyond the edge. On thin blades, rows of one side alone leave the
+  /// other side without an edge between.
   static constexpr double own_nodes = 0.2;
   static constexpr double whole_parts =
       0.25;  ///< and that share of its other nodes: a table that is thinned leaves few so far
@@ -85,11 +85,13 @@ class PointField {
   /// Fills displacement[n] for points[n] from the first field. Throws MotionError beyond FieldOptions::max_distance and
   /// max_extrapolation, naming the position.
   void operator()(std::span<Vec3 const> points, std::span<Vec3> displacement) const;
-  /// The same from the sum of factors[f] * field f; fields whose factor is zero do not count at all.
-  /// `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in mapping().
+  /// Fills displacement[n] for points[n] from the sum of factors[f] * field f; fields whose factor is zero do not count
+  /// at all. `iterates`: the points are no nodes but on the way to some; they are neither kept nor counted in
+  /// mapping().
   void evaluate(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates = false) const;
-  /// At points that are no nodes, each by the element or the points that its anchor, a place nearby, is mapped from.
+  /// Fills displacement[n] for points that are no nodes, each by the element or the points that its anchor, a place
+  /// nearby, is mapped from.
   void held(std::span<double const> factors, std::span<Vec3 const> points, std::span<Vec3 const> anchors,
             std::span<Vec3> displacement) const;
 
@@ -101,15 +103,15 @@ class PointField {
   [[nodiscard]] std::string where(std::size_t node) const;  ///< "blade.csv:14"
   [[nodiscard]] std::vector<std::string> const& notes() const;
   [[nodiscard]] MappingDistance mapping() const;
-  /// These nodes will ask for their displacement: throws MotionError where the model lies elsewhere (MappingLimits),
-  /// before any search of theirs takes its time. `slack`: so much farther they may be [length]. Looks at 4000 of them,
-  /// evenly; judge() knows all.
+  /// Says which nodes will ask for their displacement: throws MotionError where the model lies elsewhere
+  /// (MappingLimits), before any search of theirs takes its time. `slack`: so much farther they may be [length]. Looks
+  /// at 4000 of them, evenly; judge() knows all.
   void expect(std::span<Vec3 const> nodes, double slack = 0) const;
   /// Throws as expect() does, by all positions that were evaluated. Nothing where that was not called.
   void judge() const;
   [[nodiscard]] double largest_displacement() const;
   [[nodiscard]] bool has_max_distance() const;
-  /// Of the worst of the fields. Cost O(m log n) for a sample of m <= 2000 nodes.
+  /// The error by leave-one-out of the worst of the fields. Cost O(m log n) for a sample of m <= 2000 nodes.
   [[nodiscard]] MappingError leave_one_out() const;
 
  private:

@@ -19,12 +19,13 @@ constexpr std::size_t n_neighbours = 13;  // per level
 constexpr double line_like = 0.1;
 /// Variances below this share of the largest are no direction to fit a gradient in; smooth cut-off.
 constexpr double flat_like = 1e-6;
-/// From the centre of the neighbours no farther along a direction than this times their own reach along it.
+/// The farthest that is extrapolated from the centre of the neighbours along a direction: this times their own reach
+/// along it.
 constexpr double largest_extrapolation = 2;
 /// Variances above this share of the largest are directions in which the points have an edge; the others are across the
 /// surface that they lie on.
 constexpr double spanned = 0.05;
-/// Beyond the neighbours by less than this share of their reach is rounding.
+/// The share of the neighbours' reach by less than which a place beyond them is at the edge, but for rounding.
 constexpr double at_the_edge = 1e-6;
 
 struct Neighbours {
@@ -87,8 +88,8 @@ std::vector<double> weights(std::vector<Vec3> const& offset) {
   return w;
 }
 
-/// From the position to the closest place among its neighbours, along the surface or through the volume that they span;
-/// zero for a position between them.
+/// The way from the position to the closest place among its neighbours, along the surface or through the volume that
+/// they span; zero for a position between them.
 Vec3 to_the_edge(Neighbours const& near) {
   PrincipalAxes const axes = even_spread(near).axes;
   std::vector<Vec3> spanned_part(near.offset.size());
@@ -104,7 +105,7 @@ Vec3 to_the_edge(Neighbours const& near) {
   return mapping::closest_in_hull(spanned_part, at_the_edge * farthest);
 }
 
-/// From the middle of the neighbours to the farthest: of 13 on a regular grid two spacings.
+/// The distance from the middle of the neighbours to the farthest: of 13 on a regular grid two spacings.
 double reach_of(Neighbours const& near) {
   Vec3 const centre = even_spread(near).centre;
   double out = 0;
@@ -120,7 +121,7 @@ struct PointMap::Impl {
   double coincidence = 0;
 
   [[nodiscard]] Neighbours around(Vec3 const& q, std::optional<std::size_t> without) const;
-  /// `out` knows the nearest point.
+  /// The stencil of a fit to the neighbours; `out` knows the nearest point.
   [[nodiscard]] Stencil fit(Neighbours const& near, Stencil out) const;
 };
 

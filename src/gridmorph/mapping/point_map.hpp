@@ -33,7 +33,7 @@ class PointMap {
   [[nodiscard]] double coincidence() const;
   /// The stencil at a finite position. `without`: as if that point were not in the cloud (at least two must be).
   [[nodiscard]] Stencil stencil(Vec3 const& position, std::optional<std::size_t> without = std::nullopt) const;
-  /// By the points around `anchor`, a place nearby.
+  /// The stencil by the points around `anchor`, a place nearby.
   [[nodiscard]] Stencil stencil(Vec3 const& position, Vec3 const& anchor) const;
   /// The nearest point and its distance.
   [[nodiscard]] std::pair<std::size_t, double> nearest(Vec3 const& position) const;

@@ -28,7 +28,7 @@ struct StructuralModel {
   std::vector<std::string> notes;
 };
 
-/// Where a model is.
+/// The files of a model.
 struct ModelFiles {
   std::filesystem::path file;                     ///< points as text, or a CGNS file with elements
   std::optional<std::filesystem::path> elements;  ///< elements as text, for points as text

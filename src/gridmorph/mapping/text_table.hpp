@@ -15,10 +15,10 @@ namespace gridmorph::mapping {
 /// Problems of one file that are listed before the rest is left out.
 inline constexpr std::size_t most_problems_per_file = 10;
 
-/// Without blanks and carriage returns at both ends.
+/// A text without blanks and carriage returns at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// More columns are no table of numbers by point, element or span.
+/// The largest number of columns: more are no table of numbers by point, element or span.
 inline constexpr std::size_t most_columns = 1000;
 
 /// Splits one line; after most_columns fields the rest is one field more; blanks count as one separator however many

@@ -20,7 +20,7 @@ struct Directions {
   }
 };
 
-/// f(first node of a cell).
+/// Calls f(first node of the cell) for every cell.
 template <class Function>
 void for_each_cell(Zone const& block, Function const& f) {
   Index3 cells{};

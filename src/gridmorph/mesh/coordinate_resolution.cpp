@@ -58,7 +58,7 @@ int significant_bits(double v) {
   return n;
 }
 
-/// Nothing but numbers of single precision, and not because they are round ones.
+/// Whether all are numbers of single precision, and not because they are round ones.
 bool holds_single_precision(CoordinateSample const& sample) {
   constexpr int round = 18;
   int most = 0;
@@ -109,7 +109,8 @@ struct Decimals {
       least = std::min(least, d.last);
     }
   }
-  /// Of rounded numbers nine of ten end with their last decimal, of round ones few.
+  /// Whether numbers were rounded when they were written: of rounded numbers nine of ten end with their last decimal,
+  /// of round ones few.
   [[nodiscard]] bool are_rounded() const {
     auto const ending = std::count_if(last.begin(), last.end(), [&](int const at) { return at <= finest + 1; });
     return 2 * ending > std::ptrdiff_t(last.size());
@@ -118,7 +119,7 @@ struct Decimals {
   [[nodiscard]] bool are_digits() const { return finest_of_small != finest; }
 };
 
-/// Of all nodes, not of some.
+/// The largest coordinate of all nodes of a zone, not of some.
 double largest_coordinate(Mesh const& mesh, Zone const& zone) {
   double largest = 0;
   Index const end = std::min(zone.first_node + zone.size(), mesh.coordinates.size());

@@ -21,16 +21,16 @@ struct CoordinatePrecision {
   [[nodiscard]] double resolution() const { return at(extent); }
 };
 
-/// Of every zone: single precision where the file keeps them so, or where a file of double precision holds nothing else
-/// (converted ones); decimals where a text file has 6 to 12 digits; double precision otherwise. `extent` is that of the
-/// whole mesh. Looks at some two hundred nodes of each.
+/// The precision of the coordinates of every zone: single precision where the file keeps them so, or where a file of
+/// double precision holds nothing else (converted ones); decimals where a text file has 6 to 12 digits; double
+/// precision otherwise. `extent` is that of the whole mesh. Looks at some two hundred nodes of each.
 std::vector<CoordinatePrecision> coordinate_precisions(Mesh const& mesh);
-/// The coarsest of all zones.
+/// The coarsest precision of all zones.
 CoordinatePrecision coordinate_precision(Mesh const& mesh);
 
 /// One unit in the last place of the largest coordinates of the mesh [length], for the coarsest of its zones.
 inline double coordinate_resolution(Mesh const& mesh) { return coordinate_precision(mesh).resolution(); }
-/// The same for the coordinates of one zone.
+/// One unit in the last place of the largest coordinates of one zone [length].
 double coordinate_resolution(Mesh const& mesh, int zone);
 
 /// How far apart nodes may be that are one: `share` of a size, or what rounding makes of it where that is more. Both

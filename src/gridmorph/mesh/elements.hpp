@@ -13,7 +13,7 @@
 
 namespace gridmorph {
 
-/// "triangle", "tetrahedron", ...
+/// The name of a type of element: "triangle", "tetrahedron", ...
 std::string_view to_string(ElementType type);
 
 /// Elements of the mesh's own dimension (volumes in 3-D, surfaces in 2-D), zone after zone in file order.
@@ -57,7 +57,7 @@ struct ElementViews {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Index size() const { return Index(type.extent(0)); }
 };
 
-/// The same for elements.
+/// The element lists of a mesh in the memory space of `exec`.
 template <class Exec>
 ElementViews<typename Exec::memory_space> views(Exec const& exec, Elements const& elements) {
   return {detail::view_of(exec, elements.type, "gridmorph::Elements::type"),

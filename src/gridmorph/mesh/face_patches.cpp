@@ -55,7 +55,7 @@ class FacePatchFinder {
     return !behind.empty() && behind[std::size_t(face)] >= 0;
   }
 
-  /// Of a face inside the mesh the side whose nodes run as they are listed, unless a patch has it and none the other.
+  /// The side of a face inside the mesh whose nodes run as they are listed, unless a patch has it and none the other.
   [[nodiscard]] Index32 side_listed(Index32 face, std::span<Index32 const> listed) const {
     Index32 const other = topology_.boundary.behind[std::size_t(face)];
     auto const nodes = topology_.boundary.nodes[face];
@@ -66,7 +66,7 @@ class FacePatchFinder {
     return taken(first) && !taken(second) ? second : first;
   }
 
-  /// Of faces inside the mesh that are listed once, both sides belong to the patch.
+  /// Gives both sides of faces inside the mesh that are listed once to the patch.
   void other_sides() {
     for (std::size_t f = 0; f < topology_.boundary.behind.size(); ++f) {
       Index32 const other = topology_.boundary.behind[f];

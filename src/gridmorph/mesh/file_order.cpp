@@ -197,7 +197,7 @@ std::vector<Index32> order_nodes(HostInstance const& host, Mesh const& mesh) {
   return order;
 }
 
-/// By the smallest new number among their nodes.
+/// The elements in the order of the smallest new number among their nodes.
 std::vector<Index32> order_elements(HostInstance const& host, Mesh const& mesh, std::vector<Index32> const& new_node) {
   detail::IndexBuckets<Index32> const buckets(host, "gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
                                               [&](Index e, auto const& put) {

@@ -13,8 +13,8 @@ namespace gridmorph {
 struct FlowSolution {
   std::string source;  ///< file and FlowSolution_t, for messages
   bool at_nodes = true;
-  /// By the names of the CGNS SIDS ("Pressure", "VelocityX", ...), each with a value for every node of the mesh, as it
-  /// numbers them, or for every cell: blocks zone after zone, i fastest; elements by their numbers.
+  /// The fields by the names of the CGNS SIDS ("Pressure", "VelocityX", ...), each with a value for every node of the
+  /// mesh, as it numbers them, or for every cell: blocks zone after zone, i fastest; elements by their numbers.
   std::map<std::string, std::vector<double>> values;
   std::vector<std::string> available;  ///< all that the solution holds, wanted or not
 

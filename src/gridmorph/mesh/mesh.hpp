@@ -144,8 +144,8 @@ struct Coordinates {
 };
 
 struct Mesh {
-  /// Of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put back plane k = 0
-  /// only; elements of a 2-D mesh are surfaces.
+  /// The dimension of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put
+  /// back plane k = 0 only; elements of a 2-D mesh are surfaces.
   int dimension = 3;
   std::vector<Zone> zones;
   Elements elements;                      ///< of all zones; of a mesh of blocks alone none
@@ -167,7 +167,7 @@ struct Mesh {
   /// Whether all cells are those of blocks. Blocks beside zones of elements have theirs among these.
   [[nodiscard]] bool is_structured() const;
   [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().size(); }
-  /// Of all blocks.
+  /// The number of cells of all blocks.
   [[nodiscard]] Index n_cells() const;
   [[nodiscard]] Index n_elements() const { return elements.size(); }
   /// Appends a block and sets its first_node. The coordinates are allocated by the caller afterwards.
@@ -176,19 +176,19 @@ struct Mesh {
   int add_zone(std::string name, Index n_nodes);
   /// Appends an element of the last zone.
   void add_element(ElementType type, std::span<Index32 const> nodes);
-  /// Zone that holds a node, or an element.
+  /// The zone that holds a node, or an element.
   [[nodiscard]] int zone_of(Index node) const;
   [[nodiscard]] int zone_of_element(Index element) const;
   /// Diagonal of the bounding box: the size that relative tolerances refer to.
   [[nodiscard]] double size() const;
 };
 
-/// "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone 'Fluid' node 17", as the file
-/// counts.
+/// The name of a node in messages: "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone
+/// 'Fluid' node 17", as the file counts.
 std::string describe_node(Mesh const& mesh, Index node);
-/// "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
+/// The name of a range of nodes in messages: "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
 std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range);
-/// "i_min" ... "k_max" for axis 0..2 and side 0 or 1.
+/// The name of a face: "i_min" ... "k_max" for axis 0..2 and side 0 or 1.
 std::string_view face_name(int axis, int side);
 /// Patch name for messages: "'blade' (BC 'blade_ss', zone 'Zone 1')".
 std::string describe_patch(Mesh const& mesh, Patch const& patch);

@@ -8,7 +8,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Corners of the element.
+/// What lies across an element from one of its sides, by numbers of the element's corners.
 struct OfType {
   int side = -1;
   int n = 0;
@@ -39,7 +39,7 @@ OfType find_of_type(ElementType type, int side) {
   return out;
 }
 
-/// From tables that are made once.
+/// What find_of_type() finds, from tables that are made once.
 OfType const& of_type(ElementType type, int side) {
   constexpr std::array types{ElementType::quadrilateral, ElementType::prism, ElementType::hexahedron};
   constexpr std::size_t most_sides = 6;

@@ -38,7 +38,7 @@ std::string text_of_range(PointRange const& r) {
   return out + "]";
 }
 
-/// On a face of its zone, or MeshError.
+/// The face of its zone that a range lies on. Throws MeshError where it lies on none.
 detail::FaceOfRange face_of_range(Mesh const& mesh, std::string const& where, int zone, PointRange const& range) {
   if (zone < 0 || zone >= int(mesh.zones.size()))
     throw MeshError(where + "there is no zone " + std::to_string(zone) + " among " + std::to_string(mesh.zones.size()));

@@ -40,8 +40,8 @@ struct FaceOfRange {
 std::optional<IndexMap> join_faces(FaceOfRange const& own, FaceOfRange const& donor, std::array<int, 3> transform,
                                    std::string& why);
 
-/// +1 where a step out of the own zone through its face leads into the donor at growing index, -1 where at falling
-/// index; as a factor on the own step.
+/// The sign of a step through a face: +1 where a step out of the own zone through its face leads into the donor at
+/// growing index, -1 where at falling index; as a factor on the own step.
 int sign_through(IndexRange const& own, int own_normal, IndexRange const& donor, int donor_normal);
 
 /// Whether the entries are +-1, +-2, +-3 in some order; fills o.

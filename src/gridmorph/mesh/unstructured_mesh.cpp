@@ -192,8 +192,8 @@ class MeshCheck {
     }
   }
 
-  /// Every polyhedron is one closed surface. Where a face is missing there is no volume to measure; of a second shell,
-  /// a void in the cell or a part beside it, nobody knows which side is inside.
+  /// Checks that every polyhedron is one closed surface. Where a face is missing there is no volume to measure; of a
+  /// second shell, a void in the cell or a part beside it, nobody knows which side is inside.
   void polyhedra() {
     auto const& p = mesh_.polyhedra;
     Index open = 0, parted = 0, first_open = -1, first_parted = -1;

@@ -24,7 +24,7 @@ struct MiddleNode {
   Index32 node = 0;
   std::vector<Index32> amid;  ///< corners of the edge, or of the side, ascending
 };
-/// Those amid its edges, then the one amid the side where the element has such nodes.
+/// The further nodes on a side: those amid its edges, then the one amid the side where the element has such nodes.
 std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side);
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the
@@ -37,7 +37,8 @@ std::vector<Index32> patch_nodes(Patch const& patch);
 /// Elements of each type, in all zones or in one.
 std::array<Index, n_element_types> count_types(Mesh const& mesh, int zone = -1);
 
-/// "zone 'Fluid' tetrahedron 4711", as the file counts; of a block "zone 'Box' cell (i 3, j 1, k 7)".
+/// The name of an element in messages: "zone 'Fluid' tetrahedron 4711", as the file counts; of a block "zone 'Box' cell
+/// (i 3, j 1, k 7)".
 std::string describe_element(Mesh const& mesh, Index element);
 /// The numbers by which the file knows a node and an element of its zone.
 Index node_number_in_file(Mesh const& mesh, Index node);

@@ -42,15 +42,16 @@ struct BoundaryFaces {
   /// The connection: 2 c where the face has nodes of Mesh::connections[c], 2 c + 1 where it has donor nodes of it; -1:
   /// none.
   std::vector<Index32> connection;
-  /// Of baffles and other surfaces inside the mesh that patches list: the face on the other side, with the same nodes;
+  /// For baffles and other surfaces inside the mesh that patches list, the face on the other side, with the same nodes;
   /// -1: none. Empty where the mesh has no such surfaces.
   std::vector<Index32> behind;
   [[nodiscard]] Index size() const { return nodes.size(); }
 };
 
-/// All of it. The mesh must have passed check_mesh(). Faces that walls list inside the mesh, where elements on both
-/// sides have the same nodes (createBaffles of OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are
-/// boundary: its elements are no neighbours there.
+/// How the elements of a mesh hang together: elements of nodes, neighbours, boundary. The mesh must have passed
+/// check_mesh(). Faces that walls list inside the mesh, where elements on both sides have the same nodes (createBaffles
+/// of OpenFOAM, MARKER_INTERNAL of SU2, inner physical surfaces of Gmsh), are boundary: its elements are no neighbours
+/// there.
 struct UnstructuredTopology {
   CsrGraph elements_of_nodes;
   ElementSides sides;
@@ -85,7 +86,7 @@ BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology con
 /// point; its own number where there is none.
 std::vector<Index32> coincident_nodes(Mesh const& mesh);
 
-/// (n_nodes) 1 for nodes that a periodic connection pairs.
+/// Marks of nodes, (n_nodes): 1 for those that a periodic connection pairs.
 std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;

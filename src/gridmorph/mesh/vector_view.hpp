@@ -71,7 +71,7 @@ class BasicVectorView {
       BasicVectorView(X const& x, Y const& y, Z const& z)
       : BasicVectorView(layout<1>(Three<X, Y, Z>{x, y, z})) {}
 
-  /// One View, or struct of Views, per zone of the mesh. Fences `exec`.
+  /// Vectors that lie in one View, or struct of Views, per zone of the mesh. Fences `exec`.
   template <class ExecutionSpace, class ZoneViews>
   BasicVectorView(ExecutionSpace const& exec, Mesh const& mesh, std::vector<ZoneViews> const& views)
       : size_(mesh.n_nodes()) {
@@ -99,14 +99,14 @@ class BasicVectorView {
     array_.n_zones = int(host.size());
   }
 
-  /// What may be written may be read.
+  /// A read-only view of vectors that may be written.
   template <bool Other>
   requires(ReadOnly && !Other) BasicVectorView(BasicVectorView<MemorySpace, Other> const& v)
       : size_(v.size_), array_(v.array_), zones_(v.zones_) {}
 
   /// Number of vectors.
   [[nodiscard]] Index size() const { return size_; }
-  /// For kernels, while this object lives.
+  /// The vectors as kernels take them, valid while this object lives.
   [[nodiscard]] kernels::VectorArray const& array() const { return array_; }
 
  private:

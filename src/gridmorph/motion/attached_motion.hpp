@@ -20,7 +20,7 @@ class AttachedMotion {
   AttachedMotion(Boundary const& boundary, std::vector<int> const& patches, AttachedRule const& rule,
                  Displacement const& displacement);
 
-  /// Of any point. Exactly zero where the walls rest. Cost O(1); nearest: O(log n).
+  /// The displacement of any point. Exactly zero where the walls rest. Cost O(1); nearest: O(log n).
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:

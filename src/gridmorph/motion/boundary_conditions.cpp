@@ -151,7 +151,8 @@ class RulesOfConnections {
     }
   }
 
-  /// Thin inlets and walls, all of whose nodes lie on the edges of sides, are none of these.
+  /// Whether a patch has no kind that tells what it is. Thin inlets and walls, all of whose nodes lie on the edges of
+  /// sides, have one.
   [[nodiscard]] bool has_no_kind(std::size_t p) const {
     return mesh_.patches[p].kind == PatchKind::other || mesh_.patches[p].kind == PatchKind::connection;
   }
@@ -214,7 +215,7 @@ class Finder {
   }
 
  private:
-  /// Regions, wakes found from their blades.
+  /// The regions of a motion, with wakes found from their blades.
   [[nodiscard]] std::vector<InnerRegion> located(Motion const& motion) const {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);

@@ -32,7 +32,8 @@ struct JointSlip {
   [[nodiscard]] bool empty() const { return of.empty(); }
 };
 
-/// All node numbers are those of representatives (NodeGraph).
+/// What the rules make of the boundary nodes of a mesh of elements. All node numbers are those of representatives
+/// (NodeGraph).
 struct BoundaryConditions {
   std::shared_ptr<BoundaryMotion const> motion;  ///< the rules, on the boundary of the mesh
 
@@ -49,7 +50,7 @@ struct BoundaryConditions {
   std::vector<PeriodicImage> images;  ///< by node
   std::vector<Mat3> rotations;
 
-  /// Known nodes that lie on patches that slip, patch by patch.
+  /// A known node that lies on a patch that slips.
   struct OnSlipPatch {
     Index32 slot = -1;  ///< in `known`
     Index32 node = -1;  ///< of the patch
@@ -69,19 +70,19 @@ struct BoundaryConditions {
   std::vector<std::string> notes;
 
   [[nodiscard]] std::vector<Index> const& nodes_of(int patch) const { return motion->boundary().surface(patch).nodes; }
-  /// All that nodes are held on: those of the rules, then `across_axes`.
+  /// All surfaces that nodes are held on: those of the rules, then `across_axes`.
   [[nodiscard]] std::vector<SlipSurface> surfaces() const;
 };
 
-/// What a plan reckons with.
+/// Which displacements a plan reckons with.
 enum class Displacements {
   of_the_rules,  ///< what the rules give now: a wall that they displace by zero stands, whichever rule says so
   any            ///< others to come: every rule but `fixed` moves its walls
 };
 
-/// For every node 0, or the number of the blade row with which a circumferential-slide rule lets it slide: both sides
-/// of a mixing plane between rows may have the same nodes and move apart (nodes_at_one_place()). Empty where no rule
-/// slides.
+/// The row of every node: 0, or the number of the blade row with which a circumferential-slide rule lets it slide: both
+/// sides of a mixing plane between rows may have the same nodes and move apart (nodes_at_one_place()). Empty where no
+/// rule slides.
 std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion);
 
 /// Resolves the rules and finds what each boundary node is. `walls`: selectors of the walls that drive the near field;
@@ -105,9 +106,10 @@ std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& 
 
 /// Displacement of every known node. Throws MotionError as evaluate() of BoundaryRequests does.
 std::vector<Vec3> evaluate(BoundaryConditions const& boundary);
-/// The same by another motion: one with the same rules for the same patches, whose displacements alone differ.
+/// Displacement of every known node by another motion, one with the same rules for the same patches, whose
+/// displacements alone differ.
 std::vector<Vec3> evaluate(BoundaryConditions const& boundary, Motion const& motion);
-/// The length of the longest; 0 of none.
+/// The length of the longest displacement; 0 where there are none.
 double largest_norm(std::vector<Vec3> const& displacement);
 
 }  // namespace gridmorph

@@ -114,7 +114,7 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
-  /// Before the blade rows, which may follow a blade that has a target.
+  /// Makes the motions of target rules, before the blade rows, which may follow a blade that has a target.
   void make_targets() {
     Problems problems;
     for (std::size_t r = 0; r < rules.size(); ++r) {
@@ -146,14 +146,14 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
-  /// Before the blade rows, which may follow a blade that is inflated.
+  /// Makes the motions of inflate rules, before the blade rows, which may follow a blade that is inflated.
   void inflate() {
     each<InflateRule>([&](int r, InflateRule const& rule) {
       inflations.try_emplace(r, *boundary, motion, patches_of(r), rule, slip, label(r), notes);
     });
   }
 
-  /// After all that moves walls.
+  /// Extends blades to their walls, after all that moves walls.
   void extend(std::vector<std::string>& said) {
     Problems problems;
     sections_of_rule.resize(rules.size());                         // none yet: they have walls that are known
@@ -195,8 +195,8 @@ struct BoundaryMotion::Impl {
     return moved_walls.try_emplace(w, *boundary, patches_of(w), displacement, anywhere, name).first->second;
   }
 
-  /// After all that moves walls, and before what is attached to them as they go. Walls that carry features together are
-  /// one.
+  /// Makes features be carried by their walls, after all that moves walls, and before what is attached to them as they
+  /// go. Walls that carry features together are one.
   void carry(std::vector<std::string>& said) {
     auto const displacement = [this](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[std::size_t(p)].rule, points, out);
@@ -249,7 +249,7 @@ struct BoundaryMotion::Impl {
     return std::make_shared<CarryingWall const>(*boundary, walls, features, limits, own);
   }
 
-  /// After all that parts can be attached to.
+  /// Makes the motions of attached parts, after all that parts can be attached to.
   void attach(std::vector<std::string>& said) {
     Problems problems;
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
@@ -275,7 +275,7 @@ struct BoundaryMotion::Impl {
     problems.throw_if_any<MotionError>();
   }
 
-  /// Of a blade row what its periodic sides do; nothing where no rule goes along with these blades.
+  /// What the periodic sides of a blade row do; nothing where no rule goes along with these blades.
   [[nodiscard]] WakeMotion::Beside beside_wake_of(std::vector<int> const& blades) const {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (!std::holds_alternative<FollowRule>(rules[r].rule)) continue;

@@ -22,14 +22,15 @@ class FfdMotion;
 class BoundaryMotion {
  public:
   BoundaryMotion(std::shared_ptr<Boundary const> boundary, ResolvedMotion const& motion);
-  /// Of a mesh of blocks.
+  /// The motion of the boundary of a mesh of blocks.
   BoundaryMotion(Mesh const& mesh, ResolvedMotion const& motion);
   ~BoundaryMotion();
   BoundaryMotion(BoundaryMotion&&) noexcept;
   BoundaryMotion& operator=(BoundaryMotion&&) noexcept;
 
-  /// The same rules for the same patches at another time, when they displace by something else. Slip surfaces and the
-  /// places of nodes on targets are shared; slides and followers take over the blade's motion as it is then.
+  /// The motion by the same rules for the same patches at another time, when they displace by something else. Slip
+  /// surfaces and the places of nodes on targets are shared; slides and followers take over the blade's motion as it is
+  /// then.
   [[nodiscard]] BoundaryMotion with(Motion const& motion) const;
 
   [[nodiscard]] Boundary const& boundary() const;
@@ -53,7 +54,7 @@ class BoundaryMotion {
   /// Calls visit(number in slip_surfaces(), nodes) for each surface of patch p with its nodes on it; nodes where two
   /// meet come with both.
   void each_slip_surface(int patch, std::function<void(int, std::vector<Index> const&)> const& visit) const;
-  /// That surface, or null.
+  /// The surface with the number slip_surface_of(patch), or null.
   [[nodiscard]] SlipSurface const* slip_surface(int patch) const;
 
   /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
@@ -63,7 +64,7 @@ class BoundaryMotion {
   /// facets: the patch's own rule says it better.
   [[nodiscard]] bool gives_way(int rule, int patch) const;
 
-  /// Of rule number r, an ffd rule; null for others.
+  /// The lattice of rule number r, an ffd rule; null for others.
   [[nodiscard]] FfdMotion const* lattice(int rule) const;
   /// Whether rule number r alone displaces its points: no blades are extended to them, and no features carried on them.
   [[nodiscard]] bool alone(int rule) const;

@@ -20,7 +20,7 @@ namespace {
 
 using Request = BoundaryRequests::Request;
 
-/// As users know it: by its family where it has one.
+/// The name of what asks, as users know it: by its family where it has one.
 std::string requester(Mesh const& mesh, Request const& r) {
   auto const named = [](std::string const& name, std::vector<std::string> const& families) {
     return "'" + (families.empty() ? name : families.front()) + "'";
@@ -96,7 +96,8 @@ class Evaluation {
     return {requester(mesh_, r), rule(r).where, displacement, is_default(r), advice(r)};
   }
 
-  /// One motion for all nodes of a part parts it from walls that bend.
+  /// What to do where an attached part disagrees with its walls: one motion for all nodes of a part parts it from walls
+  /// that bend. Empty for other rules.
   [[nodiscard]] std::string advice(Request const& r) const {
     auto const* attached = std::get_if<AttachedRule>(&rule(r).rule);
     if (attached == nullptr || attached->how == AttachedRule::How::nearest) return {};
@@ -157,8 +158,8 @@ void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
 
 namespace {
 
-/// What leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out of its
-/// plane squeezed.
+/// Refuses what leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out
+/// of its plane squeezed.
 void require_in_plane(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                       std::vector<Vec3> const& displacement) {
   Boundary const& surfaces = motion.boundary();

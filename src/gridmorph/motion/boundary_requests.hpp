@@ -25,7 +25,7 @@ struct BoundaryRequests {
   /// Nodes of several zones may be one without a connection: there a rule that the user gives goes before a default.
   bool defaults_yield = false;
 
-  /// Puts them in order.
+  /// Puts the requests in order.
   void sort(std::vector<MotionRule> const& rules);
 };
 

@@ -9,9 +9,9 @@
 
 namespace gridmorph {
 
-/// Raised around a place of the contour. With q the distance from an edge over the chord, straight in the surface of
-/// the section and negative on side -1, and h the span fraction: height(h) shape(r), r^2 = ((q - position(h)) /
-/// extent(h))^2 + ((h - span) / span_extent)^2.
+/// A part of a surface raised around a place of the contour. With q the distance from an edge over the chord, straight
+/// in the surface of the section and negative on side -1, and h the span fraction: height(h) shape(r), r^2 = ((q -
+/// position(h)) / extent(h))^2 + ((h - span) / span_extent)^2.
 struct Bulb {
   enum class Edge { leading, trailing };
   enum class Shape {
@@ -19,7 +19,7 @@ struct Bulb {
     parabola,  ///< 1 - r^2: a crease at its rim
     bump       ///< exp(1 - 1 / (1 - r^2)): all derivatives vanish at its rim
   };
-  Edge edge = Edge::leading;  ///< that q is measured from
+  Edge edge = Edge::leading;  ///< the edge that q is measured from
   Shape shape = Shape::cosine;
   SpanwiseTable position;      ///< of the middle [chords]; empty: the edge itself
   SpanwiseTable extent;        ///< along the contour, from the middle to the rim [chords]

@@ -14,8 +14,8 @@ namespace gridmorph {
 /// One of the two that disagree on a node.
 struct Disagreeing {
   std::string name;         ///< "'hub'", as users know it: its family where it has one
-  std::string where;        ///< of its rule
-  Vec3 displacement;        ///< that it gives the node
+  std::string where;        ///< the place of its rule, as messages name it
+  Vec3 displacement;        ///< the displacement that it gives the node
   bool by_default = false;  ///< whether no rule names it
   std::string advice;       ///< what its rule could be instead
 };
@@ -24,15 +24,15 @@ struct Disagreeing {
 /// have in common.
 class Disagreements {
  public:
-  /// At most so many messages are written out.
+  /// The number of messages that are written out at most.
   static constexpr std::size_t most = 6;
 
   void add(Index node, Disagreeing const& first, Disagreeing const& second);
 
   [[nodiscard]] bool empty() const { return found_.empty(); }
 
-  /// Most nodes first. `points_of(name)`: the nodes of what has that name, patch by patch, from which is told what rule
-  /// it could have.
+  /// The messages, those about the most nodes first. `points_of(name)`: the nodes of what has that name, patch by
+  /// patch, from which is told what rule it could have.
   template <class PointsOf>
   [[nodiscard]] std::vector<std::string> messages(Mesh const& mesh, Axis const& axis, PointsOf const& points_of) const {
     std::vector<std::string> out;

@@ -35,13 +35,13 @@ struct FfdRule {
   /// Positions of the control points, i fastest, for lattices that are no box; the place of a node in them is found by
   /// Newton's method.
   std::vector<Vec3> points{};
-  /// Without box and points: a box along the coordinates around the nodes of the patches, wider on each side by so much
-  /// of its length.
+  /// The margin of the lattice where neither box nor points are given: a box along the coordinates around the nodes of
+  /// the patches is wider on each side by so much of its length.
   double margin = 0.05;
-  /// At faces of the lattice through which the patches run out of it the motion ends with this many continuous
-  /// derivatives, 0 to 2: the displacement of continuity + 1 layers of control points there must be zero.
+  /// The number of continuous derivatives, 0 to 2, with which the motion ends at faces of the lattice through which the
+  /// patches run out of it: the displacement of continuity + 1 layers of control points there must be zero.
   int continuity = 1;
-  /// i-min, i-max, j-min, ...: no layers are held there, whether patches run through or not.
+  /// Faces, i-min, i-max, j-min, ..., at which no layers are held, whether patches run through or not.
   std::array<bool, 6> open{};
 
   [[nodiscard]] std::size_t size() const {

@@ -19,10 +19,12 @@ class HeightTable {
     double side = 0;  ///< 1, -1, or 0 for both (SurfacePlace::side)
     double height = 0;
   };
-  /// In any order. Throws MotionError where two have the same place, or one side has stations and the other none.
+  /// A table of stations in any order. Throws MotionError where two have the same place, or one side has stations and
+  /// the other none.
   HeightTable(std::vector<Station> stations, SpanwiseTable::Interpolation interpolation);
 
-  /// Exactly the station's at a station. Cost O(stations along the span, and log of those along the chord).
+  /// The height at a place; exactly the station's at a station. Cost O(stations along the span, and log of those along
+  /// the chord).
   [[nodiscard]] double at(double span, double chord, double side) const;
   /// Whether heights depend on the side.
   [[nodiscard]] bool has_sides() const { return has_sides_; }

@@ -25,7 +25,7 @@
 
 namespace gridmorph {
 
-/// Displacement zero.
+/// Nodes that stay where they are: their displacement is zero.
 struct FixedRule {};
 
 /// x' = matrix * x + translation for every node: rotation, scaling, translation or a composition of them.
@@ -47,7 +47,8 @@ struct SpanwiseTable {
     spline,  ///< C1 cubics without overshoot: level at extremes, harmonic means of the secants elsewhere
     linear
   };
-  /// (span fraction, value), span fractions strictly increasing. Beyond the first and the last: their values. Empty: 0.
+  /// The stations (span fraction, value), span fractions strictly increasing. Beyond the first and the last: their
+  /// values. Empty: 0.
   std::vector<std::pair<double, double>> stations;
   Interpolation interpolation = Interpolation::spline;
 
@@ -65,9 +66,10 @@ struct SectionsRule {
   /// the coordinates (axial position, R theta). wing: plane sections across the span direction.
   enum class Sections { blade, wing };
   Sections sections = Sections::blade;
-  /// Wing: from root to tip. Found when absent: across the symmetry plane the wing stands on, else its longest extent.
+  /// The direction of the span of a wing, from root to tip. Found when absent: across the symmetry plane the wing
+  /// stands on, else its longest extent.
   std::optional<Vec3> span{};
-  /// Wing: the way of the flow, roughly; tells leading from trailing edge. Blades: along the axis.
+  /// The way of the flow around a wing, roughly; tells leading from trailing edge. Blades: along the axis.
   Vec3 flow{1, 0, 0};
   /// Chord fraction of the point of the chord line that chord, scale, twist and stagger leave in place.
   double pivot = 0.5;
@@ -98,11 +100,12 @@ struct FollowRule {
 struct SlipRule {
   enum class Surface { plane, revolution, baseline };
   Surface surface = Surface::plane;
-  /// Plane: a point and a normal; fitted to the baseline patch when absent.
+  /// A point and the normal of a plane; fitted to the baseline patch when absent.
   std::optional<std::pair<Vec3, Vec3>> plane{};
-  /// Revolution: (axial, radius) points along the profile; read off the baseline patch when empty. See TurnedProfile.
+  /// The (axial, radius) points along the profile of a surface of revolution; read off the baseline patch when empty.
+  /// See TurnedProfile.
   std::vector<std::pair<double, double>> profile{};
-  /// Baseline: facets of the patch that meet at a larger angle meet at a crease, which stays sharp.
+  /// The angle above which facets of the patch meet at a crease, which stays sharp, where nodes slide on the baseline.
   double crease_angle_rad = 0.8;
 };
 
@@ -139,7 +142,7 @@ struct InflateRule {
   double share = 1;  ///< of the height
   /// Faces that turn by more than this meet in a crease.
   double crease_angle_deg = 40;
-  /// What the sections of SurfacePlace are of: as in SectionsRule.
+  /// What the sections of SurfacePlace are of, a blade or a wing: as in SectionsRule.
   struct Sections {
     SectionsRule::Sections kind = SectionsRule::Sections::blade;
     std::optional<Vec3> span{};

@@ -45,7 +45,8 @@ int find_partner(Mesh const& mesh, int interface) {
   return -1;
 }
 
-/// The same for connections of elements; sides may list their nodes in any order.
+/// The other side of a connection of elements that the file stores twice, or -1; sides may list their nodes in any
+/// order.
 int find_partner(std::vector<Connection> const& connections, int connection) {
   Connection const& own = connections[std::size_t(connection)];
   auto const sorted = [](std::vector<Index32> list) {
@@ -340,7 +341,7 @@ class Resolver {
           ", so nothing says how the walls move that the features sit on; give them one (\"fixed\" if they stand)");
   }
 
-  /// What is asked for at places inside the domain, with no surface to go by.
+  /// Checks the rules of regions, which ask for something at places inside the domain, with no surface to go by.
   void check_regions() {
     std::map<int, std::set<std::string>> unfit;
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {

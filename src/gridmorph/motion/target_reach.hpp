@@ -19,7 +19,7 @@ struct TargetReach {
   Index worst_node = -1;  ///< where max is
 };
 
-/// "nodes", "sections", ...
+/// The name of a mapping in case files and reports: "nodes", "sections", ...
 std::string_view to_string(TargetRule::Mapping mapping);
 
 }  // namespace gridmorph

@@ -33,7 +33,7 @@ struct TargetGeometry {
   std::vector<Vec3> nodes;                    ///< new positions of the patches' nodes, patch after patch, i fastest
 };
 
-/// Nodes move to the target surface.
+/// Nodes that move to a target surface.
 struct TargetRule {
   /// How a node finds its place on the target.
   enum class Mapping {
@@ -52,14 +52,14 @@ struct TargetRule {
   std::shared_ptr<TargetGeometry const> target;
   std::string description{};  ///< for reports: "wing.stl"
   Mapping mapping = Mapping::automatic;
-  /// Sections: direction of the span; absent: away from Motion::axis (the radius).
+  /// The direction of the span for the mapping by sections; absent: away from Motion::axis (the radius).
   std::optional<Vec3> span{};
   SpanMatch span_match = SpanMatch::fraction;
-  /// Sections: downstream, to tell the leading from the trailing edge.
+  /// The direction downstream for the mapping by sections, to tell the leading from the trailing edge.
   Vec3 flow{1, 0, 0};
-  /// Projection: an edge whose facets turn by more than this is an edge of the surface.
+  /// The angle above which an edge whose facets turn there is an edge of the surface, for the mapping by projection.
   double crease_angle_deg = 40;
-  /// Of the way from the baseline to the target, straight.
+  /// The share of the way from the baseline to the target that nodes go, straight.
   double share = 1;
 };
 

@@ -8,7 +8,7 @@ namespace gridmorph {
 
 namespace {
 
-/// What would be the same in every pitch.
+/// What to do about torn copies: a rule whose displacement would be the same in every pitch.
 std::string remedy(double turn_rad) {
   std::string text = "; the motion has to be the same in every pitch";
   if (turn_rad > 0) {

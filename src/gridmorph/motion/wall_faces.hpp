@@ -13,7 +13,7 @@ namespace gridmorph {
 
 class WallFaces {
  public:
-  /// Displacement of points of a patch.
+  /// Evaluates the displacement of points of a patch.
   using Displacement = std::function<void(int patch, std::span<Vec3 const> points, std::span<Vec3> out)>;
   struct Place {
     Vec3 point;
@@ -21,14 +21,14 @@ class WallFaces {
   };
 
   WallFaces() = default;
-  /// Of lines in the boundary of a plane mesh the lines. Throws MotionError where the patches have neither. Cost O(n
-  /// log n).
+  /// The faces of patches; lines where they are lines in the boundary of a plane mesh. Throws MotionError where the
+  /// patches have neither. Cost O(n log n).
   WallFaces(Boundary const& boundary, std::vector<int> const& patches, Displacement const& displacement);
 
   [[nodiscard]] bool empty() const { return tree_.empty(); }
   /// The nearest place of the walls. Cost O(log n) near them.
   [[nodiscard]] Place nearest(Vec3 const& point) const { return place(tree_.closest(point)); }
-  /// Where one is nearer than a distance. Cost O(log n), far away O(1).
+  /// The nearest place of the walls where one is nearer than a distance. Cost O(log n), far away O(1).
   [[nodiscard]] std::optional<Place> nearest_within(Vec3 const& point, double distance) const;
 
  private:

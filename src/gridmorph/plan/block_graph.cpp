@@ -17,7 +17,7 @@ Index cells_of(IndexRange const& nodes) {
   return cells;
 }
 
-/// Of a face: one direction has a single node.
+/// The number of cell faces of a face, along one direction of which there is a single node.
 Index cell_faces_of(IndexRange const& nodes) {
   Index faces = 1;
   for (int a = 0; a < 3; ++a) faces *= std::max(nodes.extent(a) - 1, 1);

@@ -12,9 +12,9 @@ namespace gridmorph {
 struct BlockGraph {
   struct Block {
     std::string name;     ///< zone and nodes of its first piece, 1-based
-    int other_zones = 0;  ///< that it has pieces in besides
+    int other_zones = 0;  ///< number of zones that it has pieces in besides
     Index cells = 0;
-    int chain = -1;  ///< that moves it; -1: a rule does, as in regions
+    int chain = -1;  ///< number of the chain that moves it; -1: a rule does, as in regions
     std::vector<std::string>
         patches;  ///< on its outer faces: families, or names where there is none; in alphabetical order
   };
@@ -38,7 +38,8 @@ struct BlockGraph {
   std::vector<Chain> chains;        ///< stage by stage
 };
 
-/// Of a prepared morph. Blocks are found once more: O(blocks), and what near fields by thickness read of the mesh.
+/// The graph of the blocks of a prepared morph. Blocks are found once more: O(blocks), and what near fields by
+/// thickness read of the mesh.
 BlockGraph block_graph(PreparedMorph const& prepared);
 
 }  // namespace gridmorph

@@ -20,12 +20,12 @@ struct ChainPlace {
 /// What decides which of the chains that can be next come first.
 enum class ChainChoice {
   rules,         ///< VolumeOptions::priority
-  sharp_first,   ///< the smallest angle of their cells
-  blunt_first,   ///< the largest one
-  short_first,   ///< their length over their width
-  long_first,    ///< the same, the largest first
-  few_blocks,    ///< how many blocks they run through
-  many_blocks,   ///< the same, the most first
+  sharp_first,   ///< the smallest angle of their cells, the smallest first
+  blunt_first,   ///< the same angle, the largest first
+  short_first,   ///< their length over their width, the smallest first
+  long_first,    ///< their length over their width, the largest first
+  few_blocks,    ///< the number of blocks they run through, the fewest first
+  many_blocks,   ///< the number of blocks they run through, the most first
   weakest_ends,  ///< ranks of their ends, the last ones first
 };
 

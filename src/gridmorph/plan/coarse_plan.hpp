@@ -20,13 +20,14 @@ class CoarsePlanner {
 
   [[nodiscard]] int every() const { return every_; }
   [[nodiscard]] CoarseMesh const& coarse() const { return coarse_; }
-  /// With the line parameters of the mesh itself. `first`, `next`, `choice`: see build_plan(). Cost: that of a plan of
-  /// the lines kept.
+  /// A plan of the lines kept, with the line parameters of the mesh itself. `first`, `next`, `choice`: see
+  /// build_plan(). Cost: that of a plan of the lines kept.
   [[nodiscard]] PlannedMorph plan(ChainOrder const& first, ChainOrder* next = nullptr,
                                   ChainChoice choice = ChainChoice::rules);
-  /// Such a plan, with what parts have in common by `boundary`. Cost: a copy.
+  /// A plan that plan() made, with what parts have in common by `boundary`. Cost: a copy.
   [[nodiscard]] Plan with_common_motions(Plan plan, std::span<Vec3 const> boundary) const;
-  /// Of the boundary nodes of such a plan. `boundary`: of those of the plan prepared, in order.
+  /// The displacement of the boundary nodes of a plan that plan() made. `boundary`: that of those of the plan prepared,
+  /// in order.
   [[nodiscard]] std::vector<Vec3> displacement(Plan const& plan, std::span<Vec3 const> boundary) const;
 
  private:

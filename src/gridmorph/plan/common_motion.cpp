@@ -18,8 +18,8 @@ double product(Row const& a, Row const& b) { return std::inner_product(a.begin()
 /// An orthonormal basis of what A may not do.
 class Forbidden {
  public:
-  /// Twice, so that what is left is orthogonal to round-off. What repeats the others but for the noise of a mesh is
-  /// left out.
+  /// Adds what a row has beyond the basis: that is taken off twice, so that what is left is orthogonal to round-off.
+  /// What repeats the others but for the noise of a mesh is left out.
   void add(Row row) {
     constexpr double repeated = 1e-6;
     double const length = std::sqrt(product(row, row));
@@ -35,7 +35,7 @@ class Forbidden {
     for (double& r : row) r /= left;
     basis_.push_back(row);
   }
-  /// Of a linear function of the coefficients a_i of A: its values for each of them being one.
+  /// Adds the row of a linear function of the coefficients a_i of A: its values for each of them being one.
   template <class Function>
   void add_function(Function const& function) {
     Row row{};

@@ -35,7 +35,7 @@ struct CommonMotion {
   [[nodiscard]] Kokkos::View<Vec3 const*, Kokkos::HostSpace> view() const {
     return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(position.data(), position.size());
   }
-  /// Of all displacements within the limits the one nearest to `displacement`.
+  /// The fit: of all displacements within the limits the one nearest to `displacement`.
   [[nodiscard]] kernels::CommonMap fit(std::span<Vec3 const> displacement) const;
   /// Largest |A(x) - A(centre)|, and largest |u - A(x)|, at the boundary nodes.
   struct Reach {
@@ -47,8 +47,8 @@ struct CommonMotion {
   [[nodiscard]] bool is_common(std::span<Vec3 const> displacement) const;
 };
 
-/// Nodes that lie on a line or in a plane say nothing of what is across it: A does not change along that direction.
-/// area: of each node, any unit. Cost O(nodes + limits).
+/// The fit for nodes at some places. Nodes that lie on a line or in a plane say nothing of what is across it: A does
+/// not change along that direction. area: of each node, any unit. Cost O(nodes + limits).
 CommonMotion common_motion(std::vector<Vec3> position, std::vector<double> area, CommonLimits const& limits);
 
 }  // namespace gridmorph

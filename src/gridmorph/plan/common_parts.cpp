@@ -50,7 +50,7 @@ class PartBuilder {
         }
     }
   }
-  /// Of the boundary nodes, in their order.
+  /// The values that belong to the boundary nodes of the part, in their order.
   template <class T>
   [[nodiscard]] std::vector<T> listed(std::span<T const> of_boundary) const {
     std::vector<T> out;

@@ -21,11 +21,11 @@ namespace gridmorph {
 void split_common_motions(PreparedMorph& prepared,
                           std::function<std::optional<std::vector<Vec3>>()> const& displacement);
 
-/// The same parts in another plan of the same mesh.
+/// Fills Plan::common of another plan of the same mesh with the same parts.
 void carry_common_motions(PreparedMorph const& from, PlannedMorph& to);
 
-/// The same parts in a plan of some of its lines, `mesh` with the same zones, and the motions that they have by
-/// `boundary`, displacements of the nodes of the plan prepared.
+/// Fills Plan::common of a plan of some of its lines, `mesh` with the same zones, with the same parts and the motions
+/// that they have by `boundary`, displacements of the nodes of the plan prepared.
 void carry_common_motions(PreparedMorph const& from, std::span<Vec3 const> boundary, Mesh const& mesh, Plan& to);
 
 }  // namespace gridmorph

@@ -7,7 +7,7 @@ namespace gridmorph {
 
 namespace {
 
-/// "1" of the plan is the paper's first iteration; near fields and poles have names.
+/// The name of a stage: "1" of the plan is the paper's first iteration; near fields and poles have names.
 std::string name_of(Stage const& stage) {
   bool const numbered = stage.name.find_first_not_of("0123456789") == std::string::npos;
   return numbered ? "iteration " + stage.name : stage.name;

@@ -36,9 +36,9 @@ struct InverseDistanceField {
 /// as many items per lattice node.
 inline constexpr double coarse_opening = 0.4917, fine_opening = 0.3517;
 
-/// Over the box from low to high. nodes: boundary nodes; area: the share of each, positive. At most `most_nodes`
-/// lattice nodes. Cost O(n log n) in the nodes and in the lattice's nodes; the latter on all threads of the instance,
-/// whose number does not matter.
+/// The field of boundary nodes on a lattice over the box from low to high. nodes: boundary nodes; area: the share of
+/// each, positive. At most `most_nodes` lattice nodes. Cost O(n log n) in the nodes and in the lattice's nodes; the
+/// latter on all threads of the instance, whose number does not matter.
 InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
                                           std::vector<Index32> const& nodes, std::vector<double> const& area,
                                           int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes = 100'000,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int per_interval = 4;
 
-/// At n + 1 evenly spaced places.
+/// The values of a law at n + 1 evenly spaced places.
 std::vector<double> samples(OwnLaw const& law, int n) {
   std::vector<double> w;
   for (int m = 0; m <= n; ++m) {

@@ -54,7 +54,7 @@ std::uint64_t sort_key(double a) {
   return (bits & sign) != 0 ? ~bits : bits | sign;
 }
 
-/// By distance, then by place.
+/// Nodes in the order of their distance, then of their place.
 std::vector<Index32> sorted(HostInstance const& host, std::vector<Index32> const& nodes,
                             std::vector<double> const& distance, PlaceOrder const& is_before) {
   std::vector<Index32> out(nodes.size());
@@ -76,7 +76,7 @@ std::vector<Index32> sorted(HostInstance const& host, std::vector<Index32> const
   return out;
 }
 
-/// When nodes get their rows.
+/// The order in which nodes get their rows.
 struct Turns {
   static constexpr Index32 never = std::numeric_limits<Index32>::max();
   std::vector<Index32> node;  ///< one after another

@@ -57,7 +57,7 @@ MergeLimits merge_limits(Mesh const& mesh, ResolvedMotion const& motion, std::ve
   return limits;
 }
 
-/// "zone 'a' [1:13, 1:48, 1:20]", and in which other zones the block has pieces.
+/// The name of a block in messages: "zone 'a' [1:13, 1:48, 1:20]", and in which other zones the block has pieces.
 std::string block_name(Mesh const& mesh, Topology const& topology, int block) {
   auto const& pieces = topology.blocks[block].pieces;
   Piece const& first = topology.lattice.pieces()[pieces.front().piece];
@@ -94,8 +94,8 @@ std::string names_of_ends(Mesh const& mesh, Chain const& chain) {
   return names(chain.first) + " to " + names(chain.last);
 }
 
-/// Of chains between moving ends: a line that starts turned has to turn back, which costs more reach than the near
-/// field gains (docs/quality.md has the figures).
+/// The share of their walls' turn that near fields hand on to chains between moving ends: a line that starts turned has
+/// to turn back, which costs more reach than the near field gains (docs/quality.md has the figures).
 constexpr double passage_turn = 0;
 
 struct HandedOn {
@@ -258,7 +258,7 @@ class Scheduler {
     }
     return chains;
   }
-  /// By the choice that is not the rules'; those decide where it says nothing.
+  /// Puts chains in order by the choice that is not the rules'; those decide where it says nothing.
   void put_in_order(std::vector<RankedChain>& chains) {
     priority_.add_quality(chains);
     priority_.sort(chains);
@@ -315,7 +315,8 @@ class Scheduler {
     int const piece = topology_.blocks[block].pieces.front().piece;
     return !known_(topology_.lattice.class_of(topology_.lattice.entity_of_piece(piece, {1, 1, 1})));
   }
-  /// By what the rules do to places on the walls; where that says nothing, by the rules themselves.
+  /// Whether walls move as rigid bodies, by what the rules do to places on them; where that says nothing, by the rules
+  /// themselves.
   [[nodiscard]] bool is_rigid(std::vector<NearField> const& fields, WallRoots const& roots) const {
     constexpr Index enough = 2000;
     std::vector<WallRoots::BodySample> const bodies = roots.sample_bodies(enough);
@@ -327,8 +328,8 @@ class Scheduler {
       });
     });
   }
-  /// To a tenth of its largest displacement, or to a fifth where it turns by more than 30 degrees: what turns far tears
-  /// where it hands nothing on.
+  /// Whether a body moves rigidly, to a tenth of its largest displacement, or to a fifth where it turns by more than 30
+  /// degrees: what turns far tears where it hands nothing on.
   [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
     std::map<int, std::vector<std::size_t>> of_rule;
     for (std::size_t n = 0; n < body.places.size(); ++n)
@@ -392,7 +393,7 @@ class Scheduler {
     through_gap,  ///< both known
     one           ///< one known, the other on the boundary
   };
-  /// Every chain through active blocks with such ends, in the order of these: lines across gaps come before all that
+  /// All chains through active blocks with such ends, in the order of these: lines across gaps come before all that
   /// would cross them.
   std::vector<RankedChain> collect(Ends ends) {
     std::vector<RankedChain> chains;

@@ -11,7 +11,7 @@
 
 namespace gridmorph {
 
-/// Rows one after another.
+/// The rows of several operators as one, one after another.
 InterpolationOperator joined(HostInstance const& host, std::span<InterpolationOperator const> parts);
 /// The rows that `order` names.
 InterpolationOperator gathered(HostInstance const& host, InterpolationOperator const& rows,

@@ -95,7 +95,7 @@ enum class OrderBy {
 /// A plane of nodes of a zone where blocks end: chains go on through it, and those beside one another on its two sides
 /// have ranks and orders of their own.
 struct BlockCut {
-  std::string zone;     ///< its name
+  std::string zone;     ///< the name of the zone
   int axis = 0;         ///< 0, 1, 2: the plane has one i, j or k
   int node = 0;         ///< that one, counted from 0, inside the zone
   std::string where{};  ///< "case.toml:14", for messages

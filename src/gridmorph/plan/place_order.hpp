@@ -13,12 +13,13 @@
 
 namespace gridmorph {
 
-/// By x, y and z in steps of a share of the largest extent, a millionth unless told, then by what the steps leave.
-/// Where several nodes would do, the first of them is taken: numbered anew, in another unit, or with coordinates that
-/// are off by round-off, it is the same one. Steps begin and end off round numbers, where meshes have their nodes.
+/// An order of nodes by x, y and z in steps of a share of the largest extent, a millionth unless told, then by what the
+/// steps leave. Where several nodes would do, the first of them is taken: numbered anew, in another unit, or with
+/// coordinates that are off by round-off, it is the same one. Steps begin and end off round numbers, where meshes have
+/// their nodes.
 class PlaceOrder {
  public:
-  /// O(n); keeps a reference.
+  /// The order of these nodes. Keeps a reference. Cost O(n).
   explicit PlaceOrder(Coordinates const& coordinates, double share = 1.13e-6) : x_(coordinates) {
     for (Index n = 0; n < coordinates.size(); ++n) {
       Vec3 const p = coordinates[n];
@@ -32,22 +33,22 @@ class PlaceOrder {
 
   /// Whether node a comes before node b.
   [[nodiscard]] bool operator()(Index32 a, Index32 b) const { return (*this)(x_[a], a, x_[b], b); }
-  /// Of any places, with numbers to tell those apart that are the same.
+  /// Whether one of any two places comes before the other; numbers tell those apart that are the same.
   [[nodiscard]] bool operator()(Vec3 const& p, Index32 a, Vec3 const& q, Index32 b) const {
     auto const s = steps(p), t = steps(q);
     if (s != t) return s < t;
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
   }
   [[nodiscard]] double step() const { return step_; }
-  /// In which step a place is, per axis.
+  /// The number of the step that a place is in, per axis.
   [[nodiscard]] std::array<std::int64_t, 3> steps(Vec3 const& p) const {
     auto const count = [&](double x, double low) { return std::int64_t(std::floor((x - low) / step_ + 0.3819)); };
     return {count(p.x, low_.x), count(p.y, low_.y), count(p.z, low_.z)};
   }
   /// A length in steps, but for round-off.
   [[nodiscard]] double rounded_steps(double length) const { return rounded(length / step_); }
-  /// To 16 bits: a number that round-off does not change, but for those at its steps, which no ratio of small integers
-  /// is at.
+  /// A number rounded to 16 bits, one that round-off does not change, but for those at its steps, which no ratio of
+  /// small integers is at.
   [[nodiscard]] static double rounded(double a) {
     if (!std::isfinite(a) || a == 0) return a;
     // The same by the bits of the number, 52 of which are behind the leading one: 15 stay.

@@ -18,7 +18,7 @@ Vec3 along_axes(std::array<int, 3> const& axes, Vec3 const& v);
 Vec3 back_from_axes(std::array<int, 3> const& axes, Vec3 const& v);
 Mat3 along_axes(std::array<int, 3> const& axes, Mat3 const& m);
 std::vector<SlipSurface> along_axes(std::array<int, 3> const& axes, std::vector<SlipSurface> surfaces);
-/// Shares the arrays of the mesh.
+/// Coordinates whose components are those of the mesh in this order. They share its arrays.
 Coordinates along_axes(std::array<int, 3> const& axes, Coordinates const& x);
 /// A copy of its components in the order of the mesh.
 Coordinates back_from_axes(std::array<int, 3> const& axes, Coordinates const& x);

@@ -10,7 +10,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Regions, wakes found from their blades.
+/// The regions of a motion, with wakes found from their blades.
 std::vector<InnerRegion> located(Mesh& mesh, Links const& links, Motion const& motion) {
   if (!have_wakes(motion.regions)) return motion.regions;
   auto const boundary = std::make_shared<Boundary const>(mesh, links.mesh_size);

@@ -8,7 +8,7 @@
 
 namespace gridmorph {
 
-/// After a morph of the boundary displacement u
+/// What is added to the nodes after a morph of the boundary displacement u
 ///
 ///   a_d = sum over boundary nodes b of gauge_d(b) . u(b),    u(n) += sum over d of a_d shift_d(n)
 ///
@@ -23,13 +23,13 @@ struct SmoothingMap {
   double misfit = 0;         ///< largest distance from there to where the map brings the node, before it slides
   Index n_nodes = 0, n_boundary = 0;  ///< of the mesh and plan that it belongs to
   std::vector<Vec3> gauge;            ///< (n_modes, n_boundary)
-  std::vector<Index> node;            ///< that move in space, ascending
+  std::vector<Index> node;            ///< nodes that move in space, ascending
   std::vector<Vec3> shift;            ///< (node, n_modes), in the frame of the node
   // Blocks: points that slide, and all nodes at each.
   std::vector<kernels::SlidingShift> slides;
   std::vector<Vec3> slide_shift;  ///< (slides, n_modes), in the frame of SlidingShift::node
   std::vector<kernels::SlidingNode> slide_nodes;
-  std::vector<SlipSurface> surfaces;  ///< that `slides` name
+  std::vector<SlipSurface> surfaces;  ///< the surfaces that `slides` name
 
   [[nodiscard]] Index n_moved() const { return Index(node.size() + slide_nodes.size()); }
 };

@@ -63,8 +63,8 @@ class Gathering {
     Index where = 0;
   };
 
-  /// That gives a node a displacement of its own; -1 where none does: what goes along with walls asks for nothing
-  /// itself.
+  /// The rule that gives a node a displacement of its own; -1 where none does: what goes along with walls asks for
+  /// nothing itself.
   [[nodiscard]] int rule_of(std::size_t slot) const {
     Index const request = slot < deciding_.size() ? deciding_[slot] : -1;
     int const rule = request < 0 ? -1 : requests_.requests[std::size_t(request)].rule;
@@ -81,8 +81,8 @@ class Gathering {
   std::map<std::pair<int, int>, Found> found_;  ///< by patch and rule
 };
 
-/// For each surface of a plan of blocks the first patch that slips on it. Passages of wheels have more patches, which
-/// do not slip.
+/// The first patch that slips on each surface of a plan of blocks. Passages of wheels have more patches, which do not
+/// slip.
 std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
   std::vector<SlipSurface> surfaces;
   std::vector<int> const number = slip_surface_numbers(motion.boundary().mesh(), motion, surfaces);

@@ -68,8 +68,8 @@ struct PartPlan {
 };
 
 struct UnstructuredPlan {
-  /// Where there are any they make the morph, and of what follows only the lists of boundary nodes, walls, columns,
-  /// copies and further nodes are filled, for guards and reports. Nodes of no part stay.
+  /// The parts of the mesh. Where there are any they make the morph, and of what follows only the lists of boundary
+  /// nodes, walls, columns, copies and further nodes are filled, for guards and reports. Nodes of no part stay.
   std::vector<PartPlan> parts;
 
   Index n_nodes = 0;
@@ -88,17 +88,18 @@ struct UnstructuredPlan {
   std::vector<Index32> driving_slots;  ///< where they are in `known`
   std::vector<std::uint8_t> turns;     ///< (driving) whether the rotation of the wall there is followed
   CsrGraph one_rings;  ///< per driving node: pairs (a, b) of the nodes beside it in each wall face, see one_rings.hpp
-  /// Per driving node the first edges of the columns on it, unit, on the side to which the wall's normals look: those
-  /// of node r from first_line[r] on.
+  /// The first edges of the columns on each driving node, unit, on the side to which the wall's normals look: those of
+  /// node r from first_line[r] on.
   std::vector<Index> first_line;
   std::vector<Vec3> lines;
   ColumnPlan columns;
   TurningBodies turns_of_bodies;
-  /// Between walls: the smooth part of their displacement, and over all nodes of near and partially wrapped elements
-  /// what it misses. By NearFieldMethod::layers there is none, and layers carry all of it.
+  /// What carries the motion of the walls to what is between them: the smooth part of their displacement, and over all
+  /// nodes of near and partially wrapped elements what it misses. By NearFieldMethod::layers there is none, and layers
+  /// carry all of it.
   InverseDistanceField walls;
-  /// What it is spread from behind the driving nodes: nodes of other boundaries among near elements that rules move, by
-  /// their places in `known`.
+  /// What the smooth part is spread from besides the driving nodes, after these: nodes of other boundaries among near
+  /// elements that rules move, by their places in `known`.
   std::vector<Index32> beside_slots;
   LayerRows near;
   std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
@@ -124,7 +125,7 @@ struct UnstructuredPlan {
     std::vector<Index32> given_slot;  ///< in `known`
     InverseDistanceField residual;    ///< of the boundary nodes among them
     LayerRows detail;                 ///< what the lattice misses, out along the nodes that begin
-    std::vector<Index32> node;        ///< those
+    std::vector<Index32> node;        ///< the nodes that begin
     std::vector<float> fade, detail_fade;
   } start;
   std::vector<SlipSurface> surfaces;  ///< BoundaryConditions::surfaces()
@@ -147,8 +148,8 @@ struct UnstructuredPlan {
 
   std::vector<Index32> copies, copied;  ///< nodes that coincide with a representative, and that
   InterpolationOperator middle;         ///< further nodes of second-order elements: by the corners around them
-  /// Those of them on boundaries, once `middle` has moved them: `known` slots or -1, slip surfaces where not known, and
-  /// who moves as one.
+  /// The further nodes on boundaries, once `middle` has moved them: `known` slots or -1, slip surfaces where not known,
+  /// and who moves as one.
   struct MiddleBoundary {
     std::vector<Index32> node, slot;
     CsrGraph surfaces;
@@ -183,11 +184,11 @@ struct PreparedUnstructured {
   UnstructuredReport report;
   std::vector<UnstructuredReport> part_reports;  ///< of UnstructuredPlan::parts; `report` adds them up
   std::vector<std::string> notes;
-  /// Of UnstructuredPlan::known, which planning reckoned with: by the rules as they stand, or given to prepare(). None
-  /// where ElementOptions::motion was given.
+  /// The displacement of UnstructuredPlan::known that planning reckoned with: by the rules as they stand, or given to
+  /// prepare(). None where ElementOptions::motion was given.
   std::optional<std::vector<Vec3>> displacement;
 
-  /// The same, evaluated where planning did not; throws MotionError.
+  /// The displacement of UnstructuredPlan::known, evaluated where planning did not; throws MotionError.
   [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& /*mesh*/) const {
     return displacement ? *displacement : evaluate(boundary);
   }
@@ -203,9 +204,9 @@ inline PreparedUnstructured prepare(Mesh const& mesh, UnstructuredTopology const
                                     PlanOptions const& options) {
   return prepare(HostInstance(), mesh, topology, face_patches, motion, options);
 }
-/// The same for rules that are resolved already, make_node_graph() and boundary_conditions() of the mesh: for several
-/// plans of one mesh. displacement: of BoundaryConditions::known, to reckon with instead of what the rules give now and
-/// of ElementOptions::motion.
+/// Plans every stage for rules that are resolved already, with make_node_graph() and boundary_conditions() of the mesh:
+/// for several plans of one mesh. displacement: that of BoundaryConditions::known, to reckon with instead of what the
+/// rules give now and of ElementOptions::motion.
 PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                              BoundaryFacePatches const& face_patches, NodeGraph graph, BoundaryConditions boundary,
                              PlanOptions const& options, std::optional<std::vector<Vec3>> displacement = {});

@@ -36,7 +36,7 @@ PeriodicMatch tidied(PeriodicMatch const& found, double size) {
   return out;
 }
 
-/// Fitted to all cells that matched.
+/// The transform fitted to all cells that matched.
 RigidTransform refitted(SurfaceCells const& cells, std::vector<CellPair> const& pairs, bool rotation) {
   std::vector<Vec3> from, to;
   Vec3 sum;
@@ -77,7 +77,8 @@ class Trials {
     for (std::size_t n = 0; n < open.size(); n += std::size_t(stride)) sample_.push_back(open[n]);
   }
 
-  /// Those that map the most cells come first: a small piece can be like others in many ways.
+  /// The proposals in the order in which they are tried: those that map the most cells come first: a small piece can be
+  /// like others in many ways.
   [[nodiscard]] std::vector<RigidTransform> by_count(std::vector<RigidTransform> const& proposals) const {
     std::vector<std::pair<std::size_t, RigidTransform>> counted;
     for (auto const& t : proposals) counted.emplace_back(matched(t).size(), t);

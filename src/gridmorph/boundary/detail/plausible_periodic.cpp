@@ -32,7 +32,7 @@ CellArea area_of(CellShape const& s) {
   return {0.5 * length, (dot(normal, s.inward) < 0 ? -1 / length : 1 / length) * normal};
 }
 
-/// Distance from the axis.
+/// The distance of a point from the axis of a match.
 double radius_of(PeriodicMatch const& m, Vec3 const& p) { return norm(cross(p - m.origin, m.direction)); }
 
 bool same_axis(PeriodicMatch const& a, PeriodicMatch const& b, double size) {
@@ -182,7 +182,7 @@ class Judge {
     return false;
   }
 
-  /// Those about the axis of the largest.
+  /// Takes those rotations that are about the axis of the largest.
   void rotations(std::vector<Sides> const& sides, std::vector<Judgement>& out) const {
     std::size_t best = matches_.size();
     for (std::size_t m = 0; m < matches_.size(); ++m)

@@ -67,7 +67,7 @@ class Proposals {
     places_[key_of(t(centre))].push_back(int(all_.size()));
     all_.push_back({t, 1, distance(t(centre), centre)});
   }
-  /// Most votes first, then the shortest way.
+  /// The transforms in order: most votes first, then the shortest way.
   [[nodiscard]] std::vector<RigidTransform> ranked() const {
     auto sorted = all_;
     std::stable_sort(sorted.begin(), sorted.end(), [](Proposal const& a, Proposal const& b) {

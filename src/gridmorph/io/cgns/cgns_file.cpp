@@ -41,7 +41,8 @@ bool holds_mesh(std::string const& label) {
   return std::find(std::begin(entered), std::end(entered), label) != std::end(entered);
 }
 
-/// Deeper than any mesh file nests (families may nest freely): stops at links that lead back up.
+/// The depth at which reading stops, deeper than any mesh file nests (families may nest freely): stops at links that
+/// lead back up.
 constexpr int max_depth = 24;
 /// HDF5 arrays may be compressed, so that they are longer than the file; beyond this ratio the length is not believed.
 constexpr Index max_compression = 1100;

@@ -18,7 +18,7 @@ namespace gridmorph::cgns {
 /// Bytes of one value of a type ("R8": 8); 0 for types that hold no numbers or text.
 int bytes_per_element(std::string const& type);
 
-/// How a node lies in an HDF5 file.
+/// The place and the data of a node in an HDF5 file.
 struct Stored {
   static constexpr std::uint64_t small =
       1024;  ///< arrays of up to so many bytes are read with the tree, but for coordinates
@@ -68,12 +68,13 @@ class File {
 
   /// The nodes that describe a mesh, without their data. Solutions, sections and the like are listed, not entered.
   [[nodiscard]] Node tree() const;
-  /// Of a file that is a copy of the one whose tree is given, byte for byte: nothing is read where that is enough.
+  /// The tree of a file that is a copy of the one whose tree is given, byte for byte: nothing is read where that is
+  /// enough.
   [[nodiscard]] Node tree_of_copy(Node const& original) const;
   /// Enters a node that tree() only lists: its children, without theirs.
   void load_children(Node& node) const;
 
-  /// "R8", "I4", "C1", "MT", ...
+  /// The data type of a node: "R8", "I4", "C1", "MT", ...
   [[nodiscard]] std::string type(Node const& node) const;
   [[nodiscard]] std::vector<Index> dimensions(Node const& node) const;  ///< first one fastest
   /// Number of values; throws IoError where a damaged file declares more than it can hold.

@@ -56,9 +56,9 @@ struct Layout {
 Layout find_zones(File const& file, Node const& tree, Problems& problems,
                   std::vector<std::string> const& leave_out = {});
 
-/// The same for meshes with unstructured zones: those are lines of nodes, extent {nodes, 1, 1}; flat_axis is 2 where
-/// the file has no CoordinateZ. Structured zones among them are as find_zones() has them, but stand in the mesh as in
-/// the file, planes too.
+/// Finds zones and coordinate arrays of meshes with unstructured zones: those are lines of nodes, extent {nodes, 1, 1};
+/// flat_axis is 2 where the file has no CoordinateZ. Structured zones among them are as find_zones() has them, but
+/// stand in the mesh as in the file, planes too.
 Layout find_unstructured_zones(File const& file, Node const& tree, Problems& problems,
                                std::vector<std::string> const& leave_out = {});
 
@@ -73,7 +73,7 @@ std::string zone_type(File const& file, Node const& zone);
 
 /// Coordinates of one component of one zone as doubles, without rind; dest has nodes_in_file() entries.
 void read_component(File const& file, ZoneLayout const& zone, int component, double* dest);
-/// The reverse; keeps the array's precision, and what is stored in rind planes.
+/// Writes what read_component() reads; keeps the array's precision, and what is stored in rind planes.
 void write_component(File& file, ZoneLayout const& zone, int component, double const* source);
 
 }  // namespace gridmorph::cgns

@@ -17,7 +17,7 @@ Vec3 read_vector(File const& file, Node const& periodic, std::string_view name) 
   return {v[0], v[1], v[2]};
 }
 
-/// Nothing where no unit is named.
+/// Whether angles are in degrees, by the nearest node that names a unit; nothing where none does.
 std::optional<bool> in_degrees(File const& file, std::initializer_list<Node const*> nearest_first) {
   constexpr std::size_t width = 32, angle_at = 4 * width;  // mass, length, time, temperature, angle
   for (auto const* node : nearest_first) {

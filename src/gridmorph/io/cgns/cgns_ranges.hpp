@@ -10,10 +10,10 @@
 
 namespace gridmorph::cgns {
 
-/// As in the file. Along an axis the file does not have (2-D zones) both corners are 1.
+/// The corners of a range as in the file. Along an axis the file does not have (2-D zones) both corners are 1.
 using Corners = PointRange;
 
-/// "[1:33, 1:1, 9:5]", in the file's direction and with as many axes as the file has.
+/// A range as messages show it: "[1:33, 1:1, 9:5]", in the file's direction and with as many axes as the file has.
 std::string to_string(Corners const& corners, int index_dimension);
 
 /// What a point set refers to (GridLocation_t).

@@ -14,7 +14,7 @@ constexpr std::int64_t mixed = 20, ngon = 22, nface = 23;
 
 using enum ElementType;
 
-/// By ElementType_t number (cgnslib.h, since 3.1); nodes 0: no shape.
+/// The kinds of elements by ElementType_t number (cgnslib.h, since 3.1); nodes 0: no shape.
 constexpr std::array<ElementKind, 57> kinds{{
     {},
     {},

@@ -18,7 +18,7 @@ struct ElementKind {
   int dimension = 0;  ///< 0 (NODE) to 3
   ElementType type = ElementType::triangle;
   int nodes = 0;    ///< in the list
-  int corners = 0;  ///< of them, first in the list
+  int corners = 0;  ///< how many of its nodes are corners; they are the first in the list
 };
 std::optional<ElementKind> element_kind(std::int64_t cgns_type);
 
@@ -70,7 +70,7 @@ struct ListedFaces {
   std::vector<std::array<std::int64_t, 2>>
       smaller;  ///< first and last of elements of lower dimension: points, and edges in 3-D
 
-  /// Face with this number, or -1.
+  /// The face with this number in the file, or -1.
   [[nodiscard]] Index find(std::int64_t file_number) const;
   void add_smaller(std::int64_t file_number) {
     if (smaller.empty() || smaller.back()[1] + 1 != file_number) smaller.push_back({file_number, file_number});

@@ -104,7 +104,7 @@ class ConnectionReader {
     return out;
   }
 
-  /// Of a block: nodes one by one, or a rectangle of faces.
+  /// The nodes of a block that a set names: nodes one by one, or a rectangle of faces.
   std::optional<Set> nodes_of_block(int z, Node const& node) {
     auto const& zone = layout_.zones[std::size_t(z)];
     std::string why;

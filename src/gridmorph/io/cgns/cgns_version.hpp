@@ -5,7 +5,7 @@
 
 namespace gridmorph {
 
-/// "4.3.0"
+/// The version of the CGNS library: "4.3.0".
 std::string cgns_version();
 
 }  // namespace gridmorph

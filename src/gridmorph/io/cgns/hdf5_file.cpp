@@ -46,7 +46,7 @@ constexpr char const* link_name = " link";
 constexpr char const* old_version_name = " version";
 /// Lengths of the library's buffers, the zero at the end included.
 constexpr std::size_t name_length = 33, type_length = 3;
-/// Deeper than any mesh file nests (families may nest freely).
+/// The depth at which reading stops, deeper than any mesh file nests (families may nest freely).
 constexpr int max_depth = 24;
 constexpr int max_rank = 12;
 /// Links that may lead to one node: some files have one grid for a thousand zones. Links to links multiply.

@@ -9,9 +9,9 @@
 
 namespace gridmorph::cgns {
 
-/// Of CGNSLibraryVersion_t.
+/// The version that new files name in CGNSLibraryVersion_t.
 inline constexpr float library_version = 4.0F;
-/// Characters of a node's name.
+/// The number of characters that a node's name may have.
 inline constexpr std::size_t longest_name = 32;
 
 /// Names of siblings must differ and be short: appends "_2", "_3", ... where a name is taken; then it is.

@@ -16,7 +16,8 @@ namespace gridmorph::foam {
 
 namespace {
 
-/// Of the mesh size: points of meshes in text have six digits and more.
+/// The distance between nodes that match, as a share of the mesh size: points of meshes in text have six digits and
+/// more.
 constexpr double tolerance = 1e-5;
 
 using Pairs = std::vector<std::array<Index32, 2>>;
@@ -137,7 +138,7 @@ void add_cyclics(std::vector<BoundaryEntry const*> const& sides, CsrGraph const&
 
 namespace {
 
-/// "(0 0 1)"; nothing where there are no three numbers.
+/// The vector in a text such as "(0 0 1)"; nothing where there are no three numbers.
 std::optional<Vec3> vector_of(std::string_view text) {
   std::string numbers(text);
   std::replace_if(
@@ -171,7 +172,7 @@ Vec3 mean_of(std::vector<Vec3> const& places) {
   return (1 / double(places.size())) * sum;
 }
 
-/// What may take one middle to the other.
+/// The transforms that may take one middle to the other.
 std::vector<Periodic> ways_between(BoundaryEntry const& side, Vec3 const& from, Vec3 const& to) {
   std::vector<Periodic> out{periodic_translation(to - from)};
   auto const axis = vector_of(side["rotationAxis"]), centre = vector_of(side["rotationCentre"]);

@@ -14,10 +14,10 @@ namespace gridmorph::foam {
 /// Sides that do not fit become patches of kind `connection`, and a note says so.
 void add_cyclics(std::vector<BoundaryEntry const*> const& sides, CsrGraph const& faces, Mesh& mesh);
 
-/// Of sides that name one another and are mapped face by face in any order (cyclicAMI): where their nodes match one by
-/// one, a connection from each side, by its name. Tried are the translation that is declared or lies between their
-/// middles, and the rotation about rotationAxis and rotationCentre. Sides that lie on one another slide and are left
-/// alone; others that do not match are too, with a note.
+/// The connections of sides that name one another and are mapped face by face in any order (cyclicAMI): where their
+/// nodes match one by one, one from each side, by its name. Tried are the translation that is declared or lies between
+/// their middles, and the rotation about rotationAxis and rotationCentre. Sides that lie on one another slide and are
+/// left alone; others that do not match are too, with a note.
 std::vector<Connection> matching_sides(std::vector<BoundaryEntry const*> const& sides, CsrGraph const& faces,
                                        Mesh& mesh);
 

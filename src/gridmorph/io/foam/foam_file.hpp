@@ -56,17 +56,18 @@ class FoamFile {
 
   // What follows the header, from its start each time; each throws IoError with the line (text) or the byte (binary)
   // where it is not what it has to be.
-  /// `most`: how many there can be. Those below `least` are errors.
+  /// Reads a list of labels. `most`: how many there can be. Those below `least` are errors.
   std::vector<Index32> labels(Index most, std::int64_t least = -1);
   CsrGraph faces();
   /// Calls visit for each number, in order. Returns the number of points.
   Index points(std::function<void(PointText const&)> const& visit);
-  /// All of them.
+  /// Reads all points.
   Coordinates coordinates();
-  /// Throws MeshError, too, that lists patches which do not have their faces among the n_faces of the mesh.
+  /// Reads the patches. Throws MeshError, too, that lists those which do not have their faces among the n_faces of the
+  /// mesh.
   std::vector<BoundaryEntry> boundary(Index n_faces);
-  /// Their `key` ("cellLabels", "faceLabels"), each of 0 ... n - 1; other lists are passed over. Throws MeshError for
-  /// labels that are not.
+  /// Reads zones with their `key` ("cellLabels", "faceLabels"), each of 0 ... n - 1; other lists are passed over.
+  /// Throws MeshError for labels that are not.
   std::vector<ZoneEntry> zones(std::string_view key, Index n);
 
  private:

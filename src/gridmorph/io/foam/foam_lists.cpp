@@ -9,7 +9,7 @@ namespace gridmorph::foam {
 
 namespace {
 
-/// What the lists say of one another.
+/// Checks what the lists say of one another.
 void check(Lists const& lists, std::string const& where) {
   auto const& [points, single, faces, owner, neighbour, boundary, cell_zones, face_zones] = lists;
   Problems problems;

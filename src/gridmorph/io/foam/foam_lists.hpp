@@ -17,7 +17,7 @@ struct Lists {
   std::vector<BoundaryEntry> boundary;
   std::vector<ZoneEntry> cell_zones, face_zones;
 
-  /// One more than the largest cell of owner and neighbour.
+  /// The number of cells: one more than the largest cell of owner and neighbour.
   [[nodiscard]] Index32 n_cells() const;
 };
 

@@ -48,7 +48,7 @@ std::optional<fs::path> latest_points(fs::path const& of_case) {
   return out;
 }
 
-/// Without the empty file that stands for a case, and the stroke at the end.
+/// The folder that a path names: without the empty file that stands for a case, and the stroke at the end.
 fs::path folder_named(fs::path const& path) {
   std::error_code ignored;
   bool const named = path.extension() == ".foam" || path.extension() == ".OpenFOAM";
@@ -68,7 +68,7 @@ std::optional<int> processor_of(fs::path const& folder) {
   return failure != std::errc() || end != name.data() + name.size() ? std::nullopt : std::optional(value);
 }
 
-/// Those with a mesh, at a time if one is given.
+/// The parts of a decomposed case that have a mesh, at a time if one is given.
 std::vector<Part> parts_below(fs::path const& of_case, fs::path const& time) {
   std::vector<Part> out;
   std::error_code failure;

@@ -60,9 +60,9 @@ class TimeFolders {
   TimeFolders(TimeFolders const&) = delete;
   TimeFolders& operator=(TimeFolders const&) = delete;
 
-  /// The next time. `morphed`: in the order of the file.
+  /// Writes the folder of the next time. `morphed`: in the order of the file.
   void add(Coordinates const& morphed);
-  /// From here on what was written stays.
+  /// Makes what was written stay from now on.
   void commit();
 
  private:

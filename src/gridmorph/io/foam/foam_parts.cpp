@@ -143,12 +143,13 @@ class Joiner {
                     std::to_string(entry.size) + " faces, and no patch of processor" + std::to_string(number) +
                     " has as many that lead back; decompose the mesh again (decomposePar)");
   }
-  /// Of the cyclic patch that a patch between parts refers to.
+  /// The neighbour patch of the cyclic patch that a patch between parts refers to.
   [[nodiscard]] std::string_view neighbour_patch(std::size_t p, BoundaryEntry const& entry) const {
     return out_.lists.boundary[std::size_t(patch_of(p, entry, entry["referPatch"]))]["neighbourPatch"];
   }
 
-  /// Once for each pair of parts: body(part, face, the other part, its face).
+  /// Calls body(patch, face, the other part, its face) for each face that part p shares with a later one, so once for
+  /// each pair of parts.
   template <class Body>
   void each_shared_face(std::size_t p, Body const& body) const {
     for (BoundaryEntry const& entry : lists_[p].boundary) {
@@ -159,7 +160,7 @@ class Joiner {
     }
   }
 
-  /// Which node of the other part's face is the first of the own one.
+  /// The number of the node of the other part's face that is the first of the own one.
   [[nodiscard]] std::size_t start_of(BoundaryEntry const& entry, std::size_t p, Index f, std::size_t q, Index g) const {
     auto const own = lists_[p].faces[f], other = lists_[q].faces[g];
     auto const far = [&](std::size_t start) {
@@ -180,7 +181,7 @@ class Joiner {
                     "); morph all parts of one mesh together, or decompose it again (decomposePar)");
   }
 
-  /// Of the nodes of all parts, one after another: nodes at the same place have one number.
+  /// The numbers of the nodes of all parts, one after another: nodes at the same place have one number.
   [[nodiscard]] std::vector<Index> numbers_of_joined_nodes() const {
     DisjointSets<Index> same(std::size_t(first_node_.back()));
     for (std::size_t p = 0; p < parts_.size(); ++p)

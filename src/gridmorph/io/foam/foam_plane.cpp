@@ -150,7 +150,7 @@ class PlaneFinder {
     return !polygons && across;
   }
 
-  /// By the edges across, and nodes of both planes.
+  /// Finds the pairs of nodes by the edges across, and nodes of both planes.
   void find_pairs() {
     auto const side = [&](Index32 n) { return side_[std::size_t(n)]; };
     for (Index f = 0; f < lists_.faces.size(); ++f) {
@@ -316,7 +316,7 @@ Mesh upper_plane(Mesh const& mesh, Planes const& planes, Lists const& lists) {
 
 namespace {
 
-/// Both planes of a wedge: displacements in the plane between them, turned to each.
+/// The coordinates of both planes of a wedge: displacements in the plane between them, turned to each.
 Coordinates both_sides(Coordinates const& all, Planes const& planes, Coordinates const& morphed) {
   Coordinates out(all.size());
   for (std::size_t n = 0; n < planes.pairs.size(); ++n) {

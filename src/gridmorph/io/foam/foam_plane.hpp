@@ -12,7 +12,7 @@
 
 namespace gridmorph::foam {
 
-/// Of the fan of triangles from its first node, twice as long as its area.
+/// The normal of a face, summed over the fan of triangles from its first node; twice as long as its area.
 Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates);
 
 /// Two planes that meet in an axis, and the one between them, across x, y or z as OpenFOAM asks for (wedgePolyPatch).

@@ -85,12 +85,12 @@ class PointFiles {
   [[nodiscard]] Coordinates all(Coordinates const& morphed) const {
     return planes_ ? both_planes(on_planes_, *planes_, morphed) : morphed;
   }
-  /// Of one part, of `all`.
+  /// The text of the points of one part, which are among `all`.
   std::string text(std::size_t part, Coordinates const& all) {
     if (joined_ && all.size() != joined_->lists.points.size()) refuse();
     return with_points(files_[part], joined_ ? points_of_part(*joined_, part, all) : all);
   }
-  /// As they are.
+  /// The text of the points of one part as they are.
   std::string text(std::size_t part) { return with_points(files_[part], files_[part].coordinates()); }
 
  private:
@@ -142,7 +142,7 @@ struct Making {
   }
 };
 
-/// All files of a mesh but its points, which are that text.
+/// Adds all files of a mesh, with `text` for its points.
 void add_mesh_folder(std::string const& input, Folders const& from, fs::path const& folder,
                      std::string const& points_name, std::string const& text, Making& to) {
   std::error_code ignored;
@@ -166,12 +166,12 @@ std::string time_name(double time) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), time).ptr};
 }
 
-/// Of the points of a part.
+/// The folder of the points of a part at a time.
 fs::path time_folder(Part const& part, fs::path const& output, double time) {
   return output / part.folder.filename() / time_name(time) / "polyMesh";
 }
 
-/// What lies in a folder, the folder with it.
+/// Adds what lies in a folder, and the folder itself.
 void add_files_in(fs::path const& folder, std::vector<fs::path>& out) {
   out.push_back(folder);
   std::error_code failure;

@@ -23,7 +23,7 @@ namespace gridmorph::gmsh {
 
 namespace {
 
-/// Of the mesh size: periodic nodes in text have six digits and more.
+/// The distance between nodes that match, as a share of the mesh size: periodic nodes in text have six digits and more.
 constexpr double periodic_tolerance = 1e-5;
 
 int dimension_of(File const& file) {
@@ -79,7 +79,8 @@ class Builder {
                               {file_.coordinates[3 * n], file_.coordinates[3 * n + 1], file_.coordinates[3 * n + 2]});
   }
 
-  /// In version 2.2 an element that belongs to several physical groups is there once for each of them.
+  /// Gathers the groups of elements that are there several times: in version 2.2 an element that belongs to several
+  /// physical groups is there once for each of them.
   void gather_groups() {
     if (!file_.repeats_elements) return;
     std::map<std::pair<int, std::int64_t>, int> with_entity;

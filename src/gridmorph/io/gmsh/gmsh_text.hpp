@@ -13,7 +13,7 @@
 
 namespace gridmorph::gmsh {
 
-/// What $MeshFormat says.
+/// The format of a file, as $MeshFormat says it.
 struct Format {
   int version = 0;  ///< 22, 40, 41
   bool binary = false;
@@ -35,9 +35,9 @@ class Text {
   /// Name of the section that begins next ("Nodes" of $Nodes), what follows it being next; empty at the end of the
   /// file.
   std::string section();
-  /// Past $End and the name, which has to be next.
+  /// Goes past $End and the name, which have to be next.
   void end_section(std::string const& name);
-  /// Past the section without a look at what is in it.
+  /// Goes past a section without a look at what is in it.
   void skip_section(std::string const& name);
 
   // Words, in text and binary files alike.
@@ -52,15 +52,15 @@ class Text {
   std::int64_t number32(char const* what) { return format_.binary ? raw<std::int32_t>(what) : integer_word(what); }
   std::int64_t number64(char const* what) { return format_.binary ? raw<std::int64_t>(what) : integer_word(what); }
   double real(char const* what);
-  /// Past a number of any value, faster.
+  /// Goes past a number of any value, faster than real().
   void skip_real(char const* what);
 
   /// A count of things that take so many bytes each at least, which the rest of the file has to hold. `wide`: a size_t
   /// of binary files.
   Index count(char const* what, std::size_t least_bytes, bool wide);
-  /// The same as a word.
+  /// A count like count()'s that stands as a word in binary files too.
   Index count_word(char const* what, std::size_t least_bytes) { return checked(integer_word(what), what, least_bytes); }
-  /// After the raw numbers of a binary file the next word begins on a line of its own.
+  /// Goes to where the raw numbers of a binary file begin: behind the line of the words before them.
   void begin_raw();
 
   [[noreturn]] void fail(std::string const& what) const { fail_at(at_, what); }

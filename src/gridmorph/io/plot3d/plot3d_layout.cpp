@@ -40,7 +40,7 @@ std::int64_t to_integer(unsigned char const* bytes, int width, bool big_endian) 
   return width == 4 ? std::int64_t(std::int32_t(std::uint32_t(value))) : std::int64_t(value);
 }
 
-/// Nothing when the range is not in the file.
+/// The integers in a range of the file; nothing when the range is not in it.
 std::optional<std::vector<std::int64_t>> integers(Bytes& file, std::uint64_t at, std::uint64_t count, bool big_endian) {
   if (count > file.size() / 4) return std::nullopt;
   std::vector<unsigned char> bytes(count * 4);

@@ -18,7 +18,7 @@ class Bytes {
   /// Throws IoError when the file cannot be opened.
   explicit Bytes(std::string const& path);
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// False when the range is not in the file or cannot be read.
+  /// Reads a range of bytes; false when the range is not in the file or cannot be read.
   [[nodiscard]] bool read(std::uint64_t at, void* to, std::uint64_t count);
 
  private:

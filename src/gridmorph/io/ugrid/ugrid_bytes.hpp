@@ -16,7 +16,7 @@ struct Storage {
   int real_bytes = 8, integer_bytes = 4;
 };
 
-/// By the name; text where it says nothing else.
+/// How a file is stored by its name; text where that says nothing else.
 Storage storage_of(std::string_view path);
 
 class Bytes {

@@ -14,12 +14,12 @@ std::string to_base64(std::string_view bytes);
 /// and another may follow: heads of arrays are written apart or not.
 class Base64Reader {
  public:
-  /// From byte `at` of a text on.
+  /// Reads from byte `at` of a text on.
   Base64Reader(std::string_view text, std::size_t at) : text_(text), at_(at) {}
 
-  /// As many bytes; nothing where the text ends before, or goes on as something else.
+  /// The next n bytes; nothing where the text ends before, or goes on as something else.
   std::optional<std::string> read(std::size_t n);
-  /// Behind the last character that was looked at.
+  /// The place behind the last character that was looked at.
   [[nodiscard]] std::size_t at() const { return at_; }
 
  private:

@@ -10,17 +10,17 @@
 
 namespace gridmorph::vtk {
 
-/// The cells of the highest dimension, patches by cells one dimension lower. Throws MeshError.
+/// The mesh of a grid: its cells of the highest dimension, patches by cells one dimension lower. Throws MeshError.
 Mesh mesh_of(XmlFile const& file, Grid const& grid);
 
 /// Meshes of one zone each as one mesh of zones with those names.
 Mesh joined(std::vector<std::string> const& names, std::vector<Mesh> const& meshes);
 
-/// Of a zone's own part of what all zones have.
+/// A zone's own part of what all zones have.
 Coordinates part(Coordinates const& all, Zone const& zone);
 OutputFields part(OutputFields const& all, Zone const& zone);
 
-/// Numbers as in the mesh that was read, before it was put in another order.
+/// Fields in the order of the mesh that was read, before it was put in another order.
 OutputFields in_order_of_the_file(Mesh const& mesh, OutputFields const& fields);
 
 /// What goes before the names of fields, "Morph" where one of them is taken in a piece.
@@ -34,7 +34,7 @@ FieldPrefixes field_prefixes(std::span<Grid const* const> grids, OutputFields co
 void morph_grid(XmlFile const& file, Grid const& grid, int dimension, Index n_elements, Coordinates const& before,
                 Coordinates const& after, OutputFields const& fields, FieldPrefixes const& prefixes,
                 std::vector<Edit>& edits);
-/// The same for a file with one grid: its text.
+/// The text of a file with one grid, with other points and fields.
 std::string morphed_text(XmlFile const& file, int dimension, Index n_elements, Coordinates const& before,
                          Coordinates const& after, OutputFields const& fields);
 

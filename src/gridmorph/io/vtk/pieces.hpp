@@ -22,8 +22,8 @@ std::vector<std::filesystem::path> files_of_pieces(std::string const& path);
 /// boundary that no cell covers are the patch `boundary`. Throws IoError and MeshError; for ghost cells, too.
 Mesh read_pieces(std::string const& path);
 
-/// The same files with other points, and with fields: one .vtu, or a .pvtu and, in the folder of its name without the
-/// ending, the files of its pieces. All appear or none; the one that names the others comes last.
+/// Writes the files of `input` with other points, and with fields: one .vtu, or a .pvtu and, in the folder of its name
+/// without the ending, the files of its pieces. All appear or none; the one that names the others comes last.
 void write_morphed_pieces(std::string const& input, std::string const& output, Mesh const& mesh,
                           Coordinates const& morphed, OutputFields const& fields);
 

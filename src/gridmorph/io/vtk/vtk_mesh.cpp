@@ -171,7 +171,7 @@ std::vector<double> part(std::vector<double> const& values, Index first, Index n
   return {values.begin() + first, values.begin() + first + n};
 }
 
-/// Without coordinates.
+/// Appends a mesh as a zone of that name, without its coordinates.
 void append(Mesh& all, Mesh const& one, std::string const& name) {
   Index const first = all.n_nodes(), first_element = all.n_elements();
   int const z = all.add_zone(name, one.n_nodes());

@@ -126,7 +126,7 @@ class Writer {
     faces_end_.push_back(-1);
   }
 
-  /// As strings are in these files: codes of characters, each string ended by a zero.
+  /// Writes the names of patches as strings are in these files: codes of characters, each string ended by a zero.
   void names() {
     if (mesh_.patches.empty()) return;
     tags_ += std::string("<FieldData>\n<DataArray type=\"String\" Name=\"") + vtk::patch_names +
@@ -144,7 +144,7 @@ class Writer {
     for (Index n = 0; n < x.size(); ++n) out.insert(out.end(), {x.x(n), x.y(n), x.z(n)});
     return out;
   }
-  /// Both in the order of the file already.
+  /// The displacement of all nodes; both meshes are in the order of the file already.
   [[nodiscard]] std::vector<double> difference(Coordinates const& morphed) const {
     std::vector<double> out = interleaved(morphed);
     auto const before = interleaved(mesh_.coordinates);

@@ -22,21 +22,21 @@ struct Grid {
   std::vector<double> coordinates;  ///< three each
   std::vector<std::uint8_t> type;   ///< VTK's number
   CsrGraph nodes;
-  /// Of polyhedra: number of faces, then for each the number of its nodes and these. faces_end: behind the last number
-  /// of each cell, -1 of cells that are none.
+  /// The faces of polyhedra: their number, then for each the number of its nodes and these. faces_end: behind the last
+  /// number of each cell, -1 of cells that are none.
   std::vector<std::int64_t> faces, faces_end;
 };
 
-/// All of a file, in its order. Polyhedra are read in the layout of VTK before 9.4 ("faces", "faceoffsets") and in that
-/// since ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets"). Throws IoError and
+/// All grids of a file, in its order. Polyhedra are read in the layout of VTK before 9.4 ("faces", "faceoffsets") and
+/// in that since ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets"). Throws IoError and
 /// MeshError for numbers that do not fit one another, and for pieces with ghost cells.
 std::vector<Grid> read_grids(XmlFile const& file);
-/// The only one. Throws IoError where there are none, or several.
+/// The only grid of a file. Throws IoError where there are none, or several.
 Grid read_grid(XmlFile const& file);
 
 /// Dimension of the cells of highest dimension; 0 where there are none of surfaces or volumes.
 int dimension_of(Grid const& grid);
-/// Of one cell: 0 to 3; -1 where its type is not read.
+/// The dimension of one cell: 0 to 3; -1 where its type is not read.
 int dimension_of_cell(std::uint8_t type);
 
 /// Cell array by which 2-D cells are put into patches, and names of these where the file has them: number k is the k-th

@@ -37,9 +37,10 @@ class XmlFile {
   /// All values of an array. `n`: how many there have to be, or -1. Throws IoError with the line of the array.
   [[nodiscard]] std::vector<std::int64_t> integers(Tag const& array, Index n = -1) const;
   [[nodiscard]] std::vector<double> reals(Tag const& array, Index n = -1) const;
-  /// Of points; throws for an array of whole numbers, which could not hold where the points go.
+  /// The coordinates of points that an array holds; throws for an array of whole numbers, which could not hold where
+  /// the points go.
   [[nodiscard]] std::vector<double> coordinates(Tag const& array, Index n) const;
-  /// Of an array of type String: characters, or their codes as words, each string with a zero behind it.
+  /// The strings of an array of type String: characters, or their codes as words, each string with a zero behind it.
   [[nodiscard]] std::vector<std::string> strings(Tag const& array) const;
   /// A whole number that an attribute gives.
   [[nodiscard]] Index count(Tag const& tag, char const* attribute) const;

@@ -32,7 +32,7 @@ class Parser {
     at_ = found + end.size();
   }
 
-  /// To the '<' of the next tag that is one; false at the end of the file.
+  /// Goes to the '<' of the next tag that is one; false at the end of the file.
   bool next_tag() {
     while (true) {
       at_ = std::min(text_.find('<', at_), text_.size());

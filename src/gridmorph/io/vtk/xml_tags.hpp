@@ -24,11 +24,11 @@ struct Tag {
   std::size_t inside = 0, inside_end = 0;  ///< between opening and closing tag; the same where there is but one tag
   bool closed = false;                     ///< <name/>
 
-  /// Nothing where there is none.
+  /// The attribute of that name; nothing where there is none.
   [[nodiscard]] Attribute const* attribute(std::string_view name) const;
-  /// Empty where there is none.
+  /// The value of the attribute of that name; empty where there is none.
   [[nodiscard]] std::string_view operator[](std::string_view name) const;
-  /// The first of that name; nothing where there is none.
+  /// The first child of that name; nothing where there is none.
   [[nodiscard]] Tag const* child(std::string_view name) const;
 };
 

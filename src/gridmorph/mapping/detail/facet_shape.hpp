@@ -17,7 +17,7 @@ struct FacetPoint {
 
 class FacetShape {
  public:
-  /// `corner` holds 3 or 4 positions.
+  /// The shape of an element; `corner` holds 3 or 4 positions.
   FacetShape(std::array<Vec3, 4> const& corner, int corners) : corner_(corner), corners_(corners) {}
 
   [[nodiscard]] FacetPoint closest(Vec3 const& q) const;
@@ -29,7 +29,7 @@ class FacetShape {
   [[nodiscard]] std::array<double, 4> shape_change(double a, double b, double da, double db) const;
   /// Whether the point lies on the side from corner s to the next one.
   [[nodiscard]] bool on_side(FacetPoint const& p, int s) const;
-  /// Twice the vector area.
+  /// Twice the vector area of the element.
   [[nodiscard]] Vec3 area_vector() const;
 
  private:

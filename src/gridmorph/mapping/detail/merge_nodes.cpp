@@ -15,7 +15,7 @@ namespace {
 
 constexpr double conflict = 1e-6;  // of the largest displacement
 
-/// For every node the first one at its position.
+/// The first node at the position of each node.
 std::vector<std::size_t> first_at_position(std::vector<Vec3> const& p) {
   PointNumbers numbers(0);
   std::vector<std::size_t> first;

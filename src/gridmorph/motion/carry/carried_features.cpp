@@ -43,7 +43,7 @@ struct RimFaces {
     for (std::size_t n = 0; n < before.size(); ++n) most = std::max(most, distance(before[n], after[n]));
     return most;
   }
-  /// By how much it moves otherwise than a rigid motion says, on the whole.
+  /// The mean by which the ring moves otherwise than a rigid motion says, weighted by area.
   [[nodiscard]] Vec3 misfit(RigidFit const& fit) const {
     Vec3 sum;
     double total = 0;
@@ -76,7 +76,7 @@ class WallRings {
       if (feature_of_[v] >= 0) out.push_back(surface_.points[v]);
     return out;
   }
-  /// By feature; displacement(points, out) of the wall's nodes.
+  /// The rings by feature; displacement(points, out): that of the wall's nodes.
   template <class Displacement>
   [[nodiscard]] std::map<int, RimFaces> rings(Displacement const& displacement) const {
     std::vector<Vec3> points, u;

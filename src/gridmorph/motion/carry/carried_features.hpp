@@ -17,8 +17,8 @@ namespace gridmorph {
 /// What CarryRule says. Faces of its patches that share nodes are one feature; its rim are the nodes that it has in
 /// common with the walls. It moves rigidly,
 ///
-///     x' = t + R (x - s),   s = sum a_k x_k / sum a_k,   t = sum a_k y_k / sum a_k,   R: sum a_k |R (x_k - s) - (y_k -
-///     t)|^2 least,
+///     x' = t + R (x - s),   s = sum a_k x_k / sum a_k,   t = sum a_k y_k / sum a_k,
+///     R: sum a_k |R (x_k - s) - (y_k - t)|^2 least,
 ///
 /// x_k the corners of the walls' faces that touch the rim, y_k where the walls' rules put them, a_k what they have of
 /// the area of these faces (length in plane meshes): R as Horn (JOSA A 4, 1987) has it. A constraint keeps what lies
@@ -44,7 +44,8 @@ class CarriedFeatures {
                   CarryRule const& rule, std::vector<int> const& walls, Displacement const& displacement,
                   std::string const& name);
 
-  /// Of nodes of the features, found by their baseline position. Throws MotionError for other points. Cost O(1) each.
+  /// Displacement of nodes of the features, found by their baseline position. Throws MotionError for other points. Cost
+  /// O(1) each.
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
 
   [[nodiscard]] std::vector<Feature> const& features() const { return features_; }

@@ -27,7 +27,7 @@ class Reach {
     part_features();
   }
 
-  /// Of the nearest feature, or -1 where none reaches.
+  /// The number of the nearest feature, or -1 where none reaches.
   [[nodiscard]] int feature(std::size_t v) const {
     int const f = nearest_[v];
     return f >= 0 && (away_[v] == 0 || away_[v] < reach_[std::size_t(f)]) ? f : -1;
@@ -57,7 +57,7 @@ class Reach {
     own = std::min(own, away_[std::size_t(v)]);
   }
 
-  /// Half way between two of them the wall has its own motion.
+  /// Parts features from one another: half way between two of them the wall has its own motion.
   void part_features() {
     auto const neighbours = surface_.neighbours();
     for (std::size_t v = 0; v < neighbours.size(); ++v)

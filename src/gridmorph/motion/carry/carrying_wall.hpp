@@ -25,7 +25,8 @@ class CarryingWall {
                std::vector<CarriedFeatures::Feature const*> const& features, std::vector<char> const& limits,
                CarriedFeatures::Displacement const& own);
 
-  /// From what the rule of the wall gives to points to what they get; points that are no nodes of the wall keep it.
+  /// Changes the displacement that the rule of the wall gives to points into what they get; points that are no nodes of
+  /// the wall keep it.
   void change(std::span<Vec3 const> points, std::span<Vec3> displacement) const;
 
  private:

@@ -13,7 +13,8 @@ struct VertexImage {
   Mat3 rotation;
 };
 
-/// Both ways of every pair of vertices of the surface that a periodic connection of the mesh joins, each once.
+/// The vertices and their images, both ways of every pair of the surface that a periodic connection of the mesh joins,
+/// each once.
 std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface);
 
 struct EdgeDistances {
@@ -21,11 +22,11 @@ struct EdgeDistances {
   std::vector<int> source;       ///< place of the nearest one in the list of sources, -1: none
 };
 
-/// Of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one place. Cost O(n
-/// log n).
+/// The distance of every vertex from the nearest of the sources, along grid lines and sides of faces; images are one
+/// place. Cost O(n log n).
 EdgeDistances edge_distances_and_sources(PatchSurface const& surface, std::vector<VertexImage> const& images,
                                          std::vector<int> const& sources);
-/// The distances alone.
+/// The distances of edge_distances_and_sources() alone.
 inline std::vector<double> edge_distances(PatchSurface const& surface, std::vector<VertexImage> const& images,
                                           std::vector<int> const& sources) {
   return edge_distances_and_sources(surface, images, sources).distance;

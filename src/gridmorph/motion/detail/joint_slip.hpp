@@ -22,7 +22,7 @@ class RotationNumbers {
   }
   [[nodiscard]] std::int32_t then(std::int32_t first, std::int32_t next);
   [[nodiscard]] std::int32_t back(std::int32_t number);
-  /// Of all so far, but for none; pi without any [rad].
+  /// The least angle of all rotations so far that turn anything; pi where there are none [rad].
   [[nodiscard]] double least_angle() const;
   [[nodiscard]] Mat3 operator[](std::int32_t number) const {
     return number < 0 ? Mat3() : rotations_[std::size_t(number)];
@@ -41,7 +41,7 @@ struct ClassMember {
   std::int32_t turned = -1;
 };
 
-/// Finds what classes are held on.
+/// Finds the surfaces that classes of nodes which move as one are held on.
 class JointSlipFinder {
  public:
   /// rotations: of the connections; what is a small share of their angles is how far fits of several differ, and turns
@@ -61,7 +61,7 @@ class JointSlipFinder {
   void add(std::vector<ClassMember> const& members, std::size_t k, std::span<Mat3 const> around, Index32 of,
            JointSlip& to);
 
-  /// BoundaryConditions::across_axes.
+  /// What becomes BoundaryConditions::across_axes.
   [[nodiscard]] std::vector<SlipSurface> across_axes() && { return std::move(across_axes_); }
 
  private:

@@ -127,7 +127,7 @@ class Finder {
     for (int p : patches) out_.of_patch[p] = number;
   }
 
-  /// Its number.
+  /// Stores a surface, unless it is there already, and returns its number.
   int store(SlipSurface surface, std::vector<Vec3> const& points) {
     for (Vec3 const& p : points) surface.size = std::max(surface.size, distance(p, surface.origin));
     // Two rules may give one surface: a node on both slides on it, not along an edge.
@@ -159,7 +159,7 @@ class Finder {
     PlaneFit fit;
   };
 
-  /// As Boundary::points().
+  /// Positions of nodes, as Boundary::points() has them for patches.
   [[nodiscard]] std::vector<Vec3> points_of(std::vector<Index> const& nodes) const {
     std::vector<Vec3> out;
     for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
@@ -241,7 +241,7 @@ class Finder {
     return 1e-6 * extent + std::max(2e-7 * largest, 2 * boundary_.precision().at(largest));
   }
 
-  /// Of whole patches, and of parts of others.
+  /// Finds the plane of whole patches and of parts of others together.
   void plane(std::vector<Part> const& parts) {
     Patches whole, all;
     for (Part const& part : parts) {
@@ -267,7 +267,7 @@ class Finder {
     if (auto surface = plane_through(members, points, given)) store(std::move(*surface), members, points);
   }
 
-  /// Nothing, and a problem, where there is none.
+  /// The plane through points, given or fitted; nothing, and a problem, where there is none.
   std::optional<SlipSurface> plane_through(Patches const& members, std::vector<Vec3> const& points,
                                            std::optional<std::pair<Vec3, Vec3>> const& given) {
     PlaneFit const fit = fit_plane(points);
@@ -442,7 +442,7 @@ class Finder {
     return to_text(p, 3) + ", axial " + to_text(axial, 3) + ", radius " + to_text(radius, 3);
   }
 
-  /// Of a wall of revolution: its largest radius, or its extent along the axis where that is more.
+  /// The size of a wall of revolution: its largest radius, or its extent along the axis where that is more.
   double wall_size(std::vector<Vec3> const& points) const {
     double radius = 0, first = frame_.meridional(points.front()).axial, last = first;
     for (Vec3 const& p : points) {

@@ -31,7 +31,7 @@ class SpanwiseLines {
   void join_in_span();
 
   [[nodiscard]] std::vector<Line> const& lines() const { return lines_; }
-  /// Per line the numbers of those beside it, ascending.
+  /// The numbers of the lines beside each line, ascending.
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
 
  private:

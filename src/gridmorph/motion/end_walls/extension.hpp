@@ -26,7 +26,7 @@ class ExtensionMotion {
   void displacement(std::span<Vec3 const> points, std::span<Vec3> out) const;
 
   [[nodiscard]] PatchSurface const& surface() const { return surface_; }
-  /// Of vertices of surface().
+  /// The displacement of each vertex of surface().
   [[nodiscard]] std::vector<Vec3> const& displacement() const { return displacement_; }
 
  private:

@@ -23,7 +23,7 @@ class MovedWall {
 
   [[nodiscard]] std::vector<int> const& patches() const { return patches_; }
   [[nodiscard]] PatchSurface const& surface() const { return surface_; }
-  /// Of the vertices.
+  /// The displacement of each vertex.
   [[nodiscard]] std::vector<Vec3> const& displacement() const { return displacement_; }
   /// Whether any vertex moves.
   [[nodiscard]] bool moves() const;

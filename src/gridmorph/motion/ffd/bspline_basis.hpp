@@ -15,7 +15,7 @@ class BSplineBasis {
   /// degree: 0 where count is 1, else 1 ... min(count - 1, FfdRule::most_degree).
   BSplineBasis(int count, int degree) : count_(count), degree_(degree), spans_(count - degree) {}
 
-  /// Those that are not zero around a place: numbers first ... first + degree.
+  /// The values of those functions that are not zero around a place: numbers first ... first + degree.
   struct Values {
     int first = 0;
     std::array<double, FfdRule::most_degree + 1> value{}, slope{};
@@ -25,9 +25,9 @@ class BSplineBasis {
   [[nodiscard]] int degree() const { return degree_; }
   [[nodiscard]] int spans() const { return spans_; }
 
-  /// At s in [0, 1]; exactly 1 and 0 at the ends. Cost O(degree^2).
+  /// The values at s in [0, 1]; exactly 1 and 0 at the ends. Cost O(degree^2).
   [[nodiscard]] Values values(double s) const;
-  /// With the derivatives dB/ds.
+  /// The values at s with the derivatives dB/ds.
   [[nodiscard]] Values with_slopes(double s) const;
   /// Where control point n stands: sum B_n(s) place(n) = s (Greville abscissae).
   [[nodiscard]] double place(int n) const;

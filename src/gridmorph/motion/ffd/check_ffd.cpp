@@ -36,7 +36,7 @@ bool check_counts(FfdRule const& rule, std::string const& name, Problems& proble
   return good;
 }
 
-/// "control point (1, 2, 3)"
+/// The name of control point n in messages: "control point (1, 2, 3)".
 std::string control_point(FfdRule const& rule, std::size_t n) {
   auto const i = n % std::size_t(rule.counts[0]), rest = n / std::size_t(rule.counts[0]);
   return "control point (" + std::to_string(i + 1) + ", " + std::to_string(rest % std::size_t(rule.counts[1]) + 1) +

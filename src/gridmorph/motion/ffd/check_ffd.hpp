@@ -9,7 +9,7 @@
 
 namespace gridmorph {
 
-/// Of a lattice.
+/// The number of control points that a lattice may have.
 inline constexpr std::size_t most_control_points = 1'000'000;
 
 /// Adds what is wrong with a rule before any mesh is looked at; `name` begins every message.

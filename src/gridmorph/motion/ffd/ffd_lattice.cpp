@@ -6,7 +6,7 @@ namespace {
 
 constexpr double box_inside = 1e-9;  ///< of the edges of a box
 
-/// Round-off takes nothing off a face.
+/// Puts a place back onto the faces of the lattice that round-off has taken it off.
 Vec3 onto_faces(Vec3 place) {
   for (double* s : {&place.x, &place.y, &place.z}) *s = *s < 1e-12 ? 0.0 : *s > 1 - 1e-12 ? 1.0 : *s;
   return place;

@@ -15,8 +15,8 @@ namespace gridmorph {
 /// The lattice of an ffd rule as it stands, before anything is displaced. A value that is not changed.
 class FfdLattice {
  public:
-  /// Of a rule with a box, or with points that make a lattice of any shape. Throws MotionError where that folds. `name`
-  /// begins messages.
+  /// The lattice of a rule with a box, or with points that make a lattice of any shape. Throws MotionError where that
+  /// folds. `name` begins messages.
   FfdLattice(FfdRule const& rule, std::string const& name);
 
   /// (s, t, w) of a point, each in [0, 1]; nothing for points outside. Points within 1e-9 of the lattice are inside.

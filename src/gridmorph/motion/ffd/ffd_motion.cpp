@@ -26,8 +26,8 @@ Reach reach_of(std::vector<Vec3> const& points) {
   return out;
 }
 
-/// Along the coordinates, wider than the nodes by the margin. Where they have no extent: by the margin of their largest
-/// one, or by a tenth of it.
+/// A box along the coordinates, wider than the nodes by the margin. Where they have no extent: by the margin of their
+/// largest one, or by a tenth of it.
 FfdBox box_around(std::vector<Vec3> const& points, double margin, std::string const& name) {
   auto const [low, high] = reach_of(points);
   Vec3 const extent = high - low;

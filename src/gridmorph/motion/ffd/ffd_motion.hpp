@@ -21,7 +21,7 @@ class FfdMotion {
   /// begins its messages and notes. Cost O(nodes (degree + 1)^3).
   FfdMotion(Boundary const& boundary, std::vector<int> const& patches, FfdRule const& rule, std::string const& name,
             std::vector<std::string>& notes);
-  /// Other displacements of the same control points; cost O(control points).
+  /// The motion by other displacements of the same control points. Cost O(control points).
   FfdMotion(FfdMotion const& other, FfdRule const& rule, std::string const& name);
 
   /// Displacement of points, nodes or others; exactly zero outside of the lattice, exactly that of the control points
@@ -39,12 +39,12 @@ class FfdMotion {
   [[nodiscard]] std::size_t size() const { return rule_.displacement.size(); }
 
  private:
-  /// What does not depend on the displacements.
+  /// What does not depend on the displacements: the lattice, and where nodes are in it.
   struct Ground {
     FfdLattice lattice;
     std::array<bool, 6> cut{};
     PointNumbers numbers{0};                  ///< nodes of lattices that are no boxes
-    std::vector<std::optional<Vec3>> places;  ///< of these
+    std::vector<std::optional<Vec3>> places;  ///< in the lattice, of these nodes
   };
   [[nodiscard]] std::optional<Vec3> place(Vec3 const& point) const;
   void check_held(std::string const& name) const;
@@ -53,7 +53,7 @@ class FfdMotion {
   std::shared_ptr<Ground const> ground_;
 };
 
-/// "i-min", "i-max", "j-min", ...
+/// The name of a face of a lattice: "i-min", "i-max", "j-min", ...
 std::string const& ffd_face_name(std::size_t face);
 
 }  // namespace gridmorph

@@ -75,6 +75,8 @@ void LatticeInverse::sample() {
       for (int s = 0; s < a.spans(); ++s) {
         double const inf = std::numeric_limits<double>::infinity();
         Span span{{inf, inf, inf}, {-inf, -inf, -inf}, {}};
+        // A span lies within the box of the control points that have a share in it: weights are positive and add up to
+        // one.
         for (int k = w; k <= w + c.degree(); ++k)
           for (int j = t; j <= t + b.degree(); ++j)
             for (int i = s; i <= s + a.degree(); ++i) {
@@ -95,6 +97,7 @@ void LatticeInverse::sample() {
               Vec3 const place{at(a, s, l), at(b, t, m), at(c, w, n)};
               Derived const d = derived(place);
               double const volume = dot(cross(d.by[0], d.by[1]), d.by[2]);
+              // A lattice may be left-handed, but then everywhere.
               if (sign == 0) sign = volume < 0 ? -1.0 : 1.0;
               if (!(sign * volume > 1e-12 * norm(d.by[0]) * norm(d.by[1]) * norm(d.by[2])))
                 throw MotionError(
@@ -140,11 +143,13 @@ LatticeInverse::End LatticeInverse::descend(Vec3 const& point, Vec3 place) const
     at_side = false;
     for (int a = 0; a < 3; ++a) {
       double const downhill = dot(here.by[std::size_t(a)], r), s = along_axis(place, a);
+      // At a side of the lattice a place moves along it, unless downhill leads back inside.
       free[std::size_t(a)] = !((s <= 0 && downhill < 0) || (s >= 1 && downhill > 0));
       at_side = at_side || !free[std::size_t(a)];
     }
     Vec3 const whole = closest_step(here.by, free, r);
     double const before = norm(r);
+    // A whole step may lead away where the start is far off: it is halved until the distance falls.
     for (double share = 1; share > 1e-9; share /= 2) {
       Vec3 next = place + share * whole;
       for (int a = 0; a < 3; ++a) along_axis(next, a) = std::clamp(along_axis(next, a), 0.0, 1.0);

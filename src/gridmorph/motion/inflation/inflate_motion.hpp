@@ -21,7 +21,7 @@ class InflateMotion {
                 InflateRule const& rule, std::shared_ptr<SlipSurfaces const> const& slip, std::string const& name,
                 std::vector<std::string>& notes);
 
-  /// Another height on the same surface; cost O(nodes).
+  /// The motion by another height on the same surface. Cost O(nodes).
   InflateMotion(InflateMotion const& other, InflateRule const& rule, std::string const& name);
 
   /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.

@@ -17,11 +17,11 @@ namespace gridmorph {
 /// curved elements) have the means of those of the corners around.
 class VertexNormals {
  public:
-  /// Cost O(faces), and O(log) for each node that is no corner.
+  /// The normals of a surface. Cost O(faces), and O(log) for each node that is no corner.
   VertexNormals(Boundary const& boundary, PatchSurface const& surface, std::vector<VertexImage> const& images,
                 double crease_angle_deg);
 
-  /// Unit vectors; none where all faces are without area or those of a part cancel.
+  /// The unit normals of the parts of a vertex; none where all faces are without area or those of a part cancel.
   [[nodiscard]] std::span<Vec3 const> parts(int v) const {
     return {parts_.data() + first_[std::size_t(v)], parts_.data() + first_[std::size_t(v) + 1]};
   }

@@ -9,8 +9,8 @@
 
 namespace gridmorph {
 
-/// Of the linear function through nothing that fits values at offsets best (least squares), in the directions that the
-/// offsets extend in: those whose squares add up to more than `flat` of the most. Cost: linear.
+/// The gradient of the linear function, zero at no offset, that fits values at offsets best (least squares), in the
+/// directions that the offsets extend in: those whose squares add up to more than `flat` of the most. Cost: linear.
 inline Vec3 fitted_gradient(std::span<Vec3 const> offset, std::span<double const> value, double flat) {
   SmallMatrix<3> moments{};
   Vec3 b;

@@ -30,7 +30,7 @@ class FlowVariables {
     return out;
   }
 
-  /// Of a solution in two dimensions without z.
+  /// The components of the velocity; that along z is zero in a solution in two dimensions.
   [[nodiscard]] std::array<Values, 3> velocity() const {
     std::array<Values, 3> out;
     bool const own = has_velocity();

@@ -186,8 +186,8 @@ class ShockFinder {
     });
   }
 
-  /// Along the gradient the rise over a cell is what it has of the whole jump, across it its size is what it has of the
-  /// shock.
+  /// Collects the cells found with their weights: along the gradient the rise over a cell is what it has of the whole
+  /// jump, across it its size is what it has of the shock.
   void collect() {
     std::size_t next = 0;
     Vec3 sum;

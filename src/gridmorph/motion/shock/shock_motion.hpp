@@ -23,7 +23,7 @@ class ShockMotion {
   ShockMotion(Boundary const& boundary, ShockRule const& rule, std::vector<int> const& walls,
               WallFaces::Displacement const& displacement);
 
-  /// Cost O(log n), and the shock's points within the radius of its shift.
+  /// The displacement of a point. Cost O(log n), and the shock's points within the radius of its shift.
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:

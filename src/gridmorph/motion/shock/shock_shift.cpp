@@ -24,7 +24,7 @@ void ShockShift::Sheet::finish() {
 
 namespace {
 
-/// Of places within a radius; 0 beyond.
+/// How much a place counts that is within a radius; 0 beyond.
 double near_share(Vec3 const& place, Vec3 const& at, double radius) {
   double const s = distance(place, at) / radius;
   return s < 1 ? (1 - s * s) * (1 - s * s) : 0;
@@ -96,6 +96,7 @@ ShockShift::ShockShift(std::vector<ShockPoint> const& from, std::vector<ShockPoi
   for (std::size_t n = 0; n < before.place.size(); ++n) {
     Vec3 const& t = before.place[n];
     Sheet::Mean const there = after.mean(t, radius);
+    // Where the new shock lies to one side alone it ends, and says nothing of the old one there.
     if (!(there.weight > 0) || distance(there.place, t) > radius / 2) {
       closest = std::min(closest, distance(t, after.place[after.nearest(t)]));
       continue;

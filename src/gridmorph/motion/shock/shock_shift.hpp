@@ -26,9 +26,9 @@ class ShockShift {
   ShockShift(std::vector<ShockPoint> const& from, std::vector<ShockPoint> const& to, Vec3 const& direction,
              double radius);
 
-  /// v at a place; the height of the place does not matter. Cost O(log n), and the points within the radius.
+  /// The shift v at a place; the height of the place does not matter. Cost O(log n), and the points within the radius.
   [[nodiscard]] Vec3 at(Vec3 const& place) const;
-  /// Least and greatest v . d at points of the first shock.
+  /// The least and the greatest v . d at points of the first shock.
   [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double greatest() const { return greatest_; }
 

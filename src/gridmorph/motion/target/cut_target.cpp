@@ -15,7 +15,7 @@ namespace {
 constexpr double ends_within = 1e-6;   // of the size of the surface
 constexpr double counts_as_on = 1e-9;  // of the size of the target: cuts beside a corner are that corner
 
-/// Keeps what is at positive distances from a plane.
+/// Cuts a target: keeps what is at positive distances from a plane.
 class Cut {
  public:
   Cut(TargetTree const& target, Vec3 const& origin, Vec3 const& normal, double tolerance)

@@ -76,7 +76,7 @@ class EdgeMapper {
     double cost;
     int vertex, place;
   };
-  /// Of a vertex on a loop that has a partner on the target.
+  /// What is known of a vertex on a loop that has a partner on the target.
   struct LoopVertex {
     int partner = -1;  ///< number of the target's loop
     int place = -1;    ///< one on it
@@ -113,7 +113,8 @@ class EdgeMapper {
   [[nodiscard]] int free_end(int vertex) const { return neighbours_[vertex].size() == 1 ? 1 : 0; }
   void count(bool mapped) { ++(mapped ? out_.mapped : out_.unmapped); }
 
-  /// From the lines that are mapped: affine, and what that misses by inverse distance to the fourth power.
+  /// Makes the guess from the lines that are mapped: affine, and what that misses by inverse distance to the fourth
+  /// power.
   void refine_guess() {
     std::vector<Vec3> from, moved;
     for (std::size_t v = 0; v < points_.size(); ++v)
@@ -138,7 +139,8 @@ class EdgeMapper {
     };
   }
 
-  /// Half the length of the shortest chain that ends in a corner: farther away a sharp turn is not the same one.
+  /// Finds how far corners reach: half the length of the shortest chain that ends in a corner: farther away a sharp
+  /// turn is not the same one.
   void find_reach() {
     reach_.assign(points_.size(), std::numeric_limits<double>::infinity());
     for (FeatureChain const& chain : feature_chains(neighbours_, corner_)) {
@@ -163,6 +165,7 @@ class EdgeMapper {
       int const loop = loop_[std::size_t(v)].partner;
       for (int const q : places) {
         if (loop >= 0 && place_loop_[std::size_t(q)] != loop) continue;
+        // Where as many edges meet in both, corners may be far apart; sharp turns of a line are the same only near by.
         bool const alike = network_.neighbours()[q].size() == degree;
         double const limit = alike && degree != 2 ? 0.5 * size_ : reach_[v];
         double const d = distance(g, network_.point(q));

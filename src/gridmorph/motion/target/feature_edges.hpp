@@ -29,7 +29,8 @@ std::vector<std::vector<int>> feature_neighbours(std::size_t n_points, std::vect
 /// Whether exactly two edges meet in the vertex and turn by more than 45 degrees there.
 bool turns_sharply(std::vector<Vec3> const& points, std::vector<std::vector<int>> const& neighbours, int vertex);
 
-/// Every edge in one chain; chains end where other than two edges meet, and at the vertices in `corner`.
+/// The chains of edges, every edge in one of them; chains end where other than two edges meet, and at the vertices in
+/// `corner`.
 std::vector<FeatureChain> feature_chains(std::vector<std::vector<int>> const& neighbours,
                                          std::vector<char> const& corner);
 

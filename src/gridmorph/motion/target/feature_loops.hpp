@@ -20,7 +20,7 @@ struct FeatureLoop {
 std::vector<FeatureLoop> feature_loops(std::vector<Vec3> const& points, std::vector<std::vector<int>> const& neighbours,
                                        std::function<bool(int a, int b)> const& is_boundary);
 
-/// For each loop of `from` its partner among `to`, -1 for none, no partner twice: both boundary or both crease, their
+/// The partner of each loop of `from` among `to`, -1 for none, no partner twice: both boundary or both crease, their
 /// lengths apart by a factor of two at most, their middles by `farthest` at most. Nearest first, and then so that no
 /// exchange of two partners lessens the sum of the squares of the distances: a common shift of all, however long beside
 /// the loops, changes no pair. Cost O(from x to), and of up to 2000 loops their square.

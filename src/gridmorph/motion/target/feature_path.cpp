@@ -107,6 +107,7 @@ int FeatureNetwork::nearest_place(Vec3 const& p, int start) {
   points_.push_back(best);
   neighbours_.push_back({from, to});
   closed_.push_back(0);
+  // Further vertices may divide the same edge: the new one keeps the ends of the whole of it.
   auto const [a, b] = edge_between(from, to);
   on_.push_back({a, b});
   std::replace(neighbours_[from].begin(), neighbours_[from].end(), to, fresh);
@@ -136,6 +137,7 @@ std::optional<std::vector<int>> FeatureNetwork::path(int from, int to, Polyline 
     if (v == to) break;
     if (closed_[v] != 0 && v != from) continue;
     for (int const w : neighbours_[v]) {
+      // What lies off the guide costs more, so that a way follows it where a short cut would lead past.
       double const aside = guide.distance_to(0.5 * (points_[v] + points_[w])) / reach;
       double const next = c + distance(points_[v], points_[w]) * (1 + aside * aside);
       if (next < cost[w]) {

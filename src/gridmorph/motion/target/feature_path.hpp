@@ -36,7 +36,7 @@ class FeatureNetwork {
   [[nodiscard]] Vec3 const& point(int place) const { return points_[place]; }
   [[nodiscard]] std::vector<std::vector<int>> const& neighbours() const { return neighbours_; }
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
-  /// From here on no way leads through the place; ways may begin and end there.
+  /// Closes a place: no way leads through it from now on; ways may begin and end there.
   void close(int place) { closed_[place] = 1; }
   /// The place nearest to p: a vertex, or a point inside an edge, which becomes a vertex; of those that ways from
   /// `start` lead to, where it is given. -1 if there is none. Cost O(edges).

@@ -42,11 +42,11 @@ class SectionProfile {
   SectionProfile(std::vector<Vec3> points, Vec3 const& span, Vec3 const& flow, std::string const& name,
                  Edges edges = Edges::farthest, double window = 0);
 
-  /// Of the points that were given, in their order.
+  /// The positions of the points that were given, in their order.
   [[nodiscard]] std::vector<SectionPosition> positions() const;
-  /// Of the place at the share t of the way from given point n to the next one.
+  /// The position of the place at the share t of the way from given point n to the next one.
   [[nodiscard]] SectionPosition position(int n, double t) const;
-  /// Exactly one of the points where the position agrees with it to 1e-9.
+  /// The point at a position; exactly one of the points given where the position agrees with its own to 1e-9.
   [[nodiscard]] Vec3 at(SectionPosition const& position) const;
   [[nodiscard]] std::vector<Vec3> const& points() const { return points_; }
 

@@ -71,6 +71,7 @@ class RowFinder {
     for (int before = -1, at = order.front();;) {
       int next = -1;
       for (int const n : neighbours[at])
+        // Around a closed contour either way would do: the lower number decides.
         if (n != before && (next < 0 || n < next)) next = n;
       if (next < 0 || next == order.front()) break;
       order.push_back(next);

@@ -31,7 +31,7 @@ constexpr double scattered_window = 2;              ///< see SectionProfile
 /// The span coordinate of one end of the surface, by the place across the span.
 class Rim {
  public:
-  /// level: where there are no edges.
+  /// The rim at one end of the span. level: where it is taken to be if there are no edges.
   Rim(std::vector<Vec3> const& points, std::vector<std::array<int, 2>> const& edges, SpanCoordinate const& span,
       double level)
       : span_(span), level_(level) {
@@ -268,7 +268,7 @@ class Slicer {
     levels_.back() = part.last;
   }
 
-  /// One cut.
+  /// A cut through the surface at one level.
   struct Cut {
     CutLine line;
     std::optional<SectionProfile> profile;
@@ -309,7 +309,7 @@ class Slicer {
     return cut.profile->position(on.after, on.t);
   }
 
-  /// Of a node, by the cut through it or the two beside it.
+  /// The position of a node, by the cut through it or the two beside it.
   [[nodiscard]] std::optional<SectionPosition> position_of(std::vector<Cut> const& cuts, int node) const {
     double const f = share_[node];
     Vec3 const p = input_.points[node];

@@ -10,7 +10,7 @@ namespace gridmorph {
 
 class SpanCoordinate {
  public:
-  /// Along TargetRule::span where there is one, otherwise the distance from the axis.
+  /// The coordinate along TargetRule::span where there is one, otherwise the distance from the axis.
   SpanCoordinate(TargetRule const& rule, Axis const& axis)
       : origin_(axis.origin), axis_((1 / norm(axis.direction)) * axis.direction) {
     if (rule.span) direction_ = (1 / norm(*rule.span)) * *rule.span;

@@ -11,13 +11,13 @@
 
 namespace gridmorph {
 
-/// From known images of some vertices to images of all: the affine displacement that fits the known ones best carries
-/// everything along; what it misses is spread over each patch, which is cut along grid lines that known edges run
-/// along. Corners of the pieces take it by inverse distance to the fourth power, sides linearly by arc length between
-/// vertices that have an image, the inside by transfinite interpolation (W. J. Gordon and C. A. Hall 1973) with shares
-/// of the length of each grid line. Patches that are no grids take it from neighbour to neighbour instead: a vertex the
-/// mean of those nearer to the known ones by the number of sides, weighted by one over their distance. Explicit; cost
-/// O(vertices), plus corners times known vertices.
+/// Spreads known images of some vertices to images of all: the affine displacement that fits the known ones best
+/// carries everything along; what it misses is spread over each patch, which is cut along grid lines that known edges
+/// run along. Corners of the pieces take it by inverse distance to the fourth power, sides linearly by arc length
+/// between vertices that have an image, the inside by transfinite interpolation (W. J. Gordon and C. A. Hall 1973) with
+/// shares of the length of each grid line. Patches that are no grids take it from neighbour to neighbour instead: a
+/// vertex the mean of those nearer to the known ones by the number of sides, weighted by one over their distance.
+/// Explicit; cost O(vertices), plus corners times known vertices.
 class SurfaceSpread {
  public:
   /// Puts a vertex where it shall be in the end, given where the spread wants it.
@@ -29,7 +29,7 @@ class SurfaceSpread {
                 Edges const& edges);
 
   [[nodiscard]] AffineDisplacement const& carried() const { return carried_; }
-  /// Images of all vertices.
+  /// Makes the images of all vertices.
   std::vector<Vec3> run(Place const& place);
 
  private:

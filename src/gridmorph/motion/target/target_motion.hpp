@@ -22,7 +22,7 @@ class TargetMotion {
   TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
                std::vector<SlipSurface> const& slides, std::string const& name, std::vector<std::string>& notes);
 
-  /// The same with another share of the way.
+  /// The motion of another one to its target, with another share of the way.
   TargetMotion(TargetMotion const& other, double share);
 
   /// Displacement of nodes of the patches, found by their baseline position. Throws MotionError for other points.

@@ -13,8 +13,8 @@ namespace gridmorph {
 
 namespace {
 
-/// By how much targets of coincident nodes may differ: 1e-6 of the surface's size, since files of targets are in single
-/// precision, or what the precision of the mesh makes of it.
+/// The distance by which targets of coincident nodes may differ: 1e-6 of the surface's size, since files of targets are
+/// in single precision, or what the precision of the mesh makes of it.
 double same_place(PatchSurface const& surface) { return std::max(1e-6 * surface.size, surface.tolerance); }
 
 /// How a patch is laid over a grid of its size.
@@ -33,7 +33,7 @@ class GridMatcher {
     target.resize(surface.points.size());
   }
 
-  /// False when no free grid has the size of the patch.
+  /// Lays a patch over a grid of the target; false when no free grid has the size of the patch.
   bool place(PatchGrid const& patch, std::vector<std::string>& found) {
     struct Choice {
       Cost cost{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

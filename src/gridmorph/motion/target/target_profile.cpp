@@ -52,7 +52,7 @@ Segments from_sections(TargetGeometry const& target, double z, double size, bool
   return out;
 }
 
-/// Where a plane cuts facets; points on it count as above.
+/// The lines in which the plane at z cuts facets, moved to `plane`; points on it count as above it.
 Segments cut(TargetTree const& facets, double z, double plane) {
   Segments out;
   for (auto const& t : facets.triangles()) {

@@ -18,9 +18,9 @@ class Annulus {
   /// The end walls of the row, each between the ends of what the row has of it.
   using Walls = std::function<std::vector<WallPiece>()>;
 
-  /// From the slip surfaces of revolution in the row's zones when there are some inside and some outside of the blade;
-  /// otherwise from the blade's own range of radii. Keeps pointers to `surfaces`. `walls` is asked when the flow path
-  /// turns; without it, the whole candidates are the walls.
+  /// The annulus of a row, from the slip surfaces of revolution in its zones when there are some inside and some
+  /// outside of the blade; otherwise from the blade's own range of radii. Keeps pointers to `surfaces`. `walls` is
+  /// asked when the flow path turns; without it, the whole candidates are the walls.
   Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidates, std::vector<MeridionalPoint> const& blade,
           Walls const& walls = {});
 
@@ -31,7 +31,7 @@ class Annulus {
   [[nodiscard]] FlowPosition position(MeridionalPoint const& p) const;
   /// position(p).m, also where there is no span, beyond the ends of hub and case.
   [[nodiscard]] double along(MeridionalPoint const& p) const { return turning_ ? turning_->position(p).m : p.axial; }
-  /// 0 at the hub, 1 at the case.
+  /// The span fraction of a point: 0 at the hub, 1 at the case.
   [[nodiscard]] double span(MeridionalPoint const& p) const { return position(p).h; }
   /// Distance from hub to case through p.
   [[nodiscard]] double height(MeridionalPoint const& p) const;

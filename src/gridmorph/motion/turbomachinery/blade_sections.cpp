@@ -130,7 +130,8 @@ std::optional<SpanTable> edge_table(std::vector<std::vector<SpanLine>> const& co
   return table;
 }
 
-/// By the edges of each contour, the mean of its sides: `mean` of all of them at the leading and at the trailing edge.
+/// Widens the spread by the edges of each contour, where they are the mean of its sides. `mean`: that of all sides at
+/// the leading and at the trailing edge.
 void widen(BladeSections::EdgeSpread& spread, std::vector<Side> const& sides,
            std::vector<std::size_t> const& of_contour, std::array<Sample, 2> const& mean) {
   double const chord = mean[1][0] - mean[0][0];

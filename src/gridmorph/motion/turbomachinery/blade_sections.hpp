@@ -39,7 +39,7 @@ class BladeSections {
   };
   [[nodiscard]] EdgeSpread edge_spread() const { return edge_spread_; }
 
-  /// BladeSurface::sliced.
+  /// The value of BladeSurface::sliced: whether lines were made by cutting facets.
   [[nodiscard]] bool sliced() const { return sliced_; }
   [[nodiscard]] double first_span() const { return span_lo_; }
   [[nodiscard]] double last_span() const { return span_hi_; }

@@ -276,6 +276,7 @@ class Stitcher {
       }
       if (contour.lines.size() > 1) blade_.contours.push_back(std::move(contour));
     };
+    // Open contours first, each from an end: a walk from amid one would miss the lines before it.
     for (std::size_t l = 0; l < neighbours.size(); ++l)
       if (!used[l] && neighbours[l].size() < 2) walk(int(l), false);
     for (std::size_t l = 0; l < neighbours.size(); ++l)

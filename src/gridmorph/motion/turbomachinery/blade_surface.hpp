@@ -38,7 +38,7 @@ struct BladeInput {
   std::function<FlowPosition(MeridionalPoint const&)> position;
   /// Distance from hub to case through a point.
   std::function<double(MeridionalPoint const&)> height;
-  /// Increases along the flow.
+  /// A measure that increases along the flow.
   std::function<double(Vec3 const&)> along;
   /// What the displacement of a point means for those that follow it: the components that are tabulated.
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;

@@ -53,6 +53,7 @@ CutLine longest(std::vector<CutLine> pieces) {
               last_b = lb;
             }
       }
+    // b comes after a, so 0 says that no two ends are near enough.
     if (best_b == 0) break;
     CutLine &one = pieces[best_a], &other = pieces[best_b];
     if (!last_a) one.reverse();

@@ -41,9 +41,9 @@ struct CutLine {
   bool closed = false;
 
   [[nodiscard]] int size() const { return int(points.size()); }
-  /// Diagonal of its box.
+  /// The diagonal of the line's box.
   [[nodiscard]] double extent() const;
-  /// Twice its area vector; an open one is closed by a straight line.
+  /// Twice the area vector of the line; an open one is closed by a straight line.
   [[nodiscard]] Vec3 area() const;
   void reverse();
 };
@@ -64,7 +64,7 @@ class FacetCuts {
 
   [[nodiscard]] std::vector<SurfacePart> parts() const;
   [[nodiscard]] std::pair<double, double> range(SurfacePart const& part) const;
-  /// Points of its triangles.
+  /// The points of a part's triangles.
   [[nodiscard]] std::vector<std::array<int, 3>> corners(SurfacePart const& part) const;
   /// Mean span that a triangle takes up.
   [[nodiscard]] double step(SurfacePart const& part) const;

@@ -15,12 +15,12 @@
 
 namespace gridmorph {
 
-/// Of the row that holds the blades: about the axis, or that of a linear cascade where its periodic connections are
-/// translations across the axis (one direction; where there are several, that of the connections which follow a blade),
-/// towards the positive side of the coordinate that changes most; its flow goes along the axis, or, where that stands
-/// on a plane mesh, across the pitch in the plane towards the positive side likewise. Without translations such a mesh
-/// has its row in the plane, around the axis. Throws MotionError when a translation runs along the axis or their
-/// directions differ.
+/// The frame of the row that holds the blades: about the axis, or that of a linear cascade where its periodic
+/// connections are translations across the axis (one direction; where there are several, that of the connections which
+/// follow a blade), towards the positive side of the coordinate that changes most; its flow goes along the axis, or,
+/// where that stands on a plane mesh, across the pitch in the plane towards the positive side likewise. Without
+/// translations such a mesh has its row in the plane, around the axis. Throws MotionError when a translation runs along
+/// the axis or their directions differ.
 CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades);
 
 /// Hub, case and the coordinates between them of the row that holds the blades. Keeps pointers to `surfaces`.
@@ -42,17 +42,18 @@ class RowMotion {
   RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
             SlipSurfaces const& surfaces, PatchDisplacement const& displacement, std::vector<std::string>& notes);
 
-  /// Inlet and exit: turned by the angle of the leading edge (upstream of mid-chord) or trailing edge at this span.
+  /// What a node of inlet or exit is displaced by: turned by the angle of the leading edge (upstream of mid-chord) or
+  /// trailing edge at this span.
   [[nodiscard]] Vec3 slide(Vec3 const& point) const;
   /// Whether a patch is of the blade, and its sections were cut from facets: then nodes of the blade have their motion
   /// from the blade's own rule, which the sections meet but for the facets.
   [[nodiscard]] bool gives_way_to(int patch) const;
-  /// Before mid-chord, along the flow.
+  /// Whether a point lies before mid-chord, along the flow.
   [[nodiscard]] bool is_upstream(Vec3 const& point) const;
-  /// Periodics: mid-camber motion between the edges, linear taper along the flow path to the ends of the row. Between
-  /// known end walls the span fraction is kept as far as the blade keeps its own; where the blade leaves the walls, so
-  /// do nodes on the walls, and finalize puts both back alike. Between the end of a blade and a wall that it does not
-  /// reach, what leads off the span fraction falls to nothing at the wall.
+  /// What a node of periodic sides is displaced by: mid-camber motion between the edges, linear taper along the flow
+  /// path to the ends of the row. Between known end walls the span fraction is kept as far as the blade keeps its own;
+  /// where the blade leaves the walls, so do nodes on the walls, and finalize puts both back alike. Between the end of
+  /// a blade and a wall that it does not reach, what leads off the span fraction falls to nothing at the wall.
   [[nodiscard]] Vec3 follow(Vec3 const& point) const;
 
  private:
@@ -76,10 +77,11 @@ class RowMotion {
                                         double chord_fraction) const;
   /// Components of the motion (see Annulus::components).
   [[nodiscard]] CylindricalMotion follow_motion(FlowPosition const& at) const;
-  /// Of the camber line at a span fraction (of the nearest section, beyond the blade), tapered beyond its edges.
+  /// The motion of the camber line at a span fraction (of the nearest section, beyond the blade), tapered beyond its
+  /// edges.
   [[nodiscard]] CylindricalMotion along_camber(FlowPosition const& at) const;
-  /// Between the end of a blade and a wall that it does not reach, how much of what leads off its span fraction is
-  /// left: falls to nothing at the wall.
+  /// How much of what leads off its span fraction is left between the end of a blade and a wall that it does not reach:
+  /// falls to nothing at the wall.
   [[nodiscard]] double share_over_gap(double h) const;
 
   std::vector<int> blades_;  ///< ascending

@@ -36,7 +36,7 @@ class SectionFrame {
   [[nodiscard]] virtual double period() const = 0;
   /// The angle or length of t that tells two lines apart.
   [[nodiscard]] virtual double scale_of_t() const { return period(); }
-  /// How stitch_blade sees span.
+  /// What stitch_blade() takes for the span, the flow and the motion of nodes.
   [[nodiscard]] virtual BladeInput stitching() const = 0;
 };
 

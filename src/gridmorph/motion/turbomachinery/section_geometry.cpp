@@ -201,6 +201,7 @@ SectionGeometry::SectionGeometry(Outline outline) {
   n_sections_ = int(std::clamp<std::size_t>(2 * most_nodes - 1, 33, 129));
   auto const span_of = [&](int k) { return span_lo_ + (span_hi_ - span_lo_) * k / (n_sections_ - 1); };
 
+  // Corners are those of the mean over several sections, so that all sections have their edges at the same lines.
   std::vector<double> turn(lines.size(), 0.0);
   constexpr int n_looks = 9;
   for (int look = 0; look < n_looks; ++look) {
@@ -214,6 +215,8 @@ SectionGeometry::SectionGeometry(Outline outline) {
     double const h = span_of(k);
     Section section(lines, h);
     Edge leading = find.leading(section, section[section.most_downstream()]), trailing;
+    // An edge without corners is the place farthest from the other one, in lengths that both edges set: a few rounds
+    // settle them.
     for (int pass = 0; pass < 6; ++pass) {
       trailing = find.trailing(section, leading.at);
       leading = find.leading(section, trailing.at);
@@ -294,7 +297,7 @@ std::vector<SectionGeometry::Line> lines_of(SectionFrame const& frame, BladeSurf
   return lines;
 }
 
-/// Both sides of one blade of an H mesh, the second turned onto the first.
+/// The outline of both sides of one blade of an H mesh, the second turned onto the first.
 SectionGeometry::Outline join_sides(SectionFrame const& frame, std::vector<SectionGeometry::Line> one,
                                     std::vector<SectionGeometry::Line> other) {
   auto const upstream_first = [](std::vector<SectionGeometry::Line>& side) {

@@ -59,7 +59,7 @@ class SectionGeometry {
 
   [[nodiscard]] double first_span() const { return span_lo_; }
   [[nodiscard]] double last_span() const { return span_hi_; }
-  /// "41 spanwise lines (O), span 0 to 1, chord ... " for notes.
+  /// What was found, for notes: "41 spanwise lines (O), span 0 to 1, chord ... ".
   [[nodiscard]] std::string const& description() const { return description_; }
 
  private:

@@ -37,11 +37,11 @@ class SectionMotion {
   SectionMotion(Boundary const& boundary, ResolvedMotion const& motion, SectionsRule const& rule,
                 std::vector<int> const& patches, SlipSurfaces const& surfaces, std::vector<std::string>& notes);
 
-  /// Cost: O(log sections), times the blades of the rule.
+  /// The displacement of a point. Cost: O(log sections), times the blades of the rule.
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:
-  /// Integral of tan(bow) from span 0.
+  /// The integral of tan(bow) from span 0.
   [[nodiscard]] double bow_integral(double span) const;
 
   SectionsRule rule_;

@@ -24,14 +24,14 @@ class SectionPlaces {
     ChordLine line;
     ChordPoint point;
   };
-  /// Cost: O(log sections), times the blades of the rule.
+  /// The seat of a point. Cost: O(log sections), times the blades of the rule.
   [[nodiscard]] Seat seat(SectionPoint const& p) const;
 
   [[nodiscard]] SectionFrame const& frame() const { return *frame_; }
   /// Whether both sides of every blade are there.
   [[nodiscard]] bool have_camber() const;
 
-  /// Cost as seat().
+  /// The place of a point on the sections. Cost as seat().
   [[nodiscard]] SurfacePlace at(Vec3 const& point) const;
 
  private:

@@ -9,7 +9,7 @@ namespace gridmorph {
 
 class SlicedPart {
  public:
-  /// Keeps pointers to `cuts` and `input`. Cost: some hundred cuts.
+  /// Finds the sections of a part. Keeps pointers to `cuts` and `input`. Cost: some hundred cuts.
   SlicedPart(FacetCuts const& cuts, SliceInput const& input, SurfacePart triangles);
 
   double middle = 0;  ///< of its span
@@ -18,11 +18,11 @@ class SlicedPart {
   double step = 1;  ///< span of a facet
 
   [[nodiscard]] SurfacePart const& triangles() const { return triangles_; }
-  /// Its section at mid span.
+  /// The section of the part at mid span.
   [[nodiscard]] CutLine const& section() const { return reference_; }
-  /// Its section at a span fraction, run through as that at mid span is.
+  /// The section of the part at a span fraction, run through as that at mid span is.
   [[nodiscard]] CutLine cut(double span) const;
-  /// Whether its sections go around the blade: closed, or with ends that lie together (C).
+  /// Whether the sections of the part go around the blade: closed, or with ends that lie together (C).
   [[nodiscard]] bool around() const { return around_; }
   /// Whether the other part's section at mid span lies inside this one's.
   [[nodiscard]] bool holds(SlicedPart const& other) const;

@@ -73,8 +73,8 @@ class ContourMaker {
     return Section{h, std::move(line), std::move(at)};
   }
 
-  /// Between a section and the end of the span, where those are others, the last one that is alike: halves of the
-  /// stretch.
+  /// The last section that is alike, between one that is and the end of the span, where sections are not: found by
+  /// halving the stretch.
   [[nodiscard]] std::optional<Section> nearer(double span, double end, Anchors const& alike) const {
     constexpr int halvings = 10;
     std::optional<Section> out;

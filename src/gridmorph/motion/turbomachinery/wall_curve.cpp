@@ -105,6 +105,7 @@ std::vector<WallCurve> chain_walls(std::vector<WallPiece> pieces) {
         std::to_string(pieces.size()) + " such surface was found in the zones of this row");
   std::vector<std::vector<WallPiece>> chains;
   for (WallPiece& piece : pieces) chains.push_back({std::move(piece)});
+  // Hub and case are two chains: pieces are joined at the ends nearest to one another until two are left.
   while (chains.size() > 2) {
     std::size_t best_a = 0, best_b = 1;
     bool best_turn_a = false, best_turn_b = false;
@@ -129,6 +130,7 @@ std::vector<WallCurve> chain_walls(std::vector<WallPiece> pieces) {
     chains.erase(chains.begin() + std::ptrdiff_t(best_b));
   }
   if (lowest_radius(chains[1]) < lowest_radius(chains[0])) std::swap(chains[0], chains[1]);
+  // The hub begins at its smaller axial position, and the case where it is nearer to the hub's begin.
   MeridionalPoint const a = begin_of(chains[0]), b = end_of(chains[0]);
   if (std::pair(b.axial, b.radius) < std::pair(a.axial, a.radius)) reverse(chains[0]);
   auto const apart = [&] {

@@ -12,8 +12,8 @@ namespace gridmorph {
 
 /// A point x of the wake of a section moves by
 ///
-///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),   v(x) = f ( T u_e + (D - 1)(x - x_e) ) + (1 - f)
-///     b(x),   f = 1 - smoothstep(behind / fade)
+///     u(x) = v(x) + (1 - smoothstep(|x - x_w| / r)) (u_w - v(x_w)),
+///     v(x) = f ( T u_e + (D - 1)(x - x_e) ) + (1 - f) b(x),   f = 1 - smoothstep(behind / fade)
 ///
 /// b: what the field beside the wake does, which the periodic sides of a blade row follow their blade with; nothing
 /// beside wings. x_e, u_e: the trailing edge of its section and its displacement; T: what keeps its components along
@@ -32,7 +32,8 @@ class WakeMotion {
              std::vector<int> const& patches, SlipSurfaces const& surfaces, WallFaces::Displacement const& displacement,
              std::vector<std::string>& notes, Beside beside = {});
 
-  /// Exactly zero where the trailing edge and the field beside rest. Cost O(log n), times blades and periodic copies.
+  /// The displacement of a point; exactly zero where the trailing edge and the field beside rest. Cost O(log n), times
+  /// blades and periodic copies.
   [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
 
  private:

@@ -15,7 +15,7 @@ struct WakePlace {
       image;          ///< the periodic copy of the point that lies in the wake; nothing: the point itself
   double behind = 0;  ///< along the wake from the trailing edge; negative before it
   double across = 0;  ///< off the middle of the wake
-  /// From the point to the trailing edge, and to the camber line a tenth of the chord before it: s and t of
+  /// The ways from the point to the trailing edge, and to the camber line a tenth of the chord before it: s and t of
   /// SectionPoint.
   std::array<double, 2> to_edge{}, to_camber{};
   double scale = 1;  ///< length of a unit of t
@@ -27,7 +27,7 @@ struct WakePlace {
 /// on a row that turns at constant radius it is the path of free swirl.
 class WakePlaces {
  public:
-  /// Of the chord, before the trailing edge: what says where the wake goes, and how it turns.
+  /// The share of the chord, before the trailing edge, whose camber says where the wake goes, and how it turns.
   static constexpr double last_part = 0.1;
 
   /// Throws MotionError when the sections cannot be made. Keeps pointers to `surfaces`. Cost O(nodes log nodes).
@@ -35,8 +35,8 @@ class WakePlaces {
              std::vector<int> const& patches, SlipSurfaces const& surfaces, std::optional<double> angle_rad,
              std::vector<std::string>& notes);
 
-  /// Of the point and its periodic copies one pitch to either side that which is nearest to the middle of the wake,
-  /// reckoned with how far it is before the edge. Cost O(log sections), times blades and copies.
+  /// The place of that among the point and its periodic copies one pitch to either side which is nearest to the middle
+  /// of the wake, reckoned with how far it is before the edge. Cost O(log sections), times blades and copies.
   [[nodiscard]] WakePlace at(Vec3 const& point) const;
 
   [[nodiscard]] SectionFrame const& frame() const { return places_.frame(); }

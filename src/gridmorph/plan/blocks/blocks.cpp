@@ -224,6 +224,7 @@ bool Blocks::assemble(Lattice const& lattice, std::vector<char>& removable) {
             place[to.piece] = there;
             members.push_back(to.piece);
           } else if (place[to.piece] != there || !(to_block_[to.piece] == to_block)) {
+            // The piece comes up again at another place, or turned: these close a ring.
             keep_sheet_of(face);
             return false;
           }
@@ -240,6 +241,7 @@ bool Blocks::assemble(Lattice const& lattice, std::vector<char>& removable) {
     std::size_t const volume = std::size_t(block.n_pieces[0]) * block.n_pieces[1] * block.n_pieces[2];
     std::set<Index3> distinct;
     for (int p : members) distinct.insert(place[p]);
+    // Pieces that leave gaps in their box or lie on one another are no cuboid: the sheet passed last is kept.
     if (volume != members.size() || distinct.size() != members.size()) {
       keep_sheet_of(last_sheet);
       return false;

@@ -31,7 +31,7 @@ struct Block {
 
 /// What keeps pieces apart beyond the topology itself.
 struct MergeLimits {
-  /// Per Mesh::patches, per Mesh::interfaces: faces with different labels stay on different blocks.
+  /// Labels of Mesh::patches and of Mesh::interfaces: faces with different labels stay on different blocks.
   std::vector<int> patch_label, interface_label;
   std::vector<CutPlane> kept_planes;  ///< near-field limits and the like
 };

@@ -189,6 +189,7 @@ ChainLayout lay_out(Topology const& topology, Chain const& chain) {
       which[chain_axis] = p;
       ChainPiece const& piece = layout.at(which[0], which[1], which[2]);
       int const zone_axis = piece.to_chain.inverse().axis[chain_axis];
+      // Neighbouring pieces share the nodes between them.
       begin.push_back(at);
       at += lattice.pieces()[piece.piece].nodes.extent(zone_axis) - 1;
     }

@@ -22,7 +22,7 @@ class ChainLaws {
     int own = -1;  ///< which of the user's own
     friend bool operator==(Choice const&, Choice const&) = default;
   };
-  /// From which end of a chain a law starts. either: where nothing tells one from the other a law of the user's own
+  /// The end of a chain from which a law starts. either: where nothing tells one from the other a law of the user's own
   /// counts by its part that is the same from both, (w(t) + 1 - w(1 - t)) / 2.
   enum class From { first, last, either };
   struct OfChain {
@@ -39,21 +39,21 @@ class ChainLaws {
   [[nodiscard]] std::vector<char> naming(int patch) const;
 
   [[nodiscard]] Choice usual() const { return usual_; }
-  /// Of a chain by its ends; `given` before all. A law between two ends starts from the first of them, all others from
-  /// the end that ranks better in `kind_order`.
+  /// The law of a chain by its ends; `given` before all. A law between two ends starts from the first of them, all
+  /// others from the end that ranks better in `kind_order`.
   [[nodiscard]] OfChain of(Chain const& chain, std::optional<Law> given,
                            std::vector<std::string> const& kind_order) const;
-  /// Along a chain that the law starts from the first end of, or from either. near: of the two ends, those on the edge
-  /// of a near field, which moves as one with its wall: slope zero there.
+  /// The law along a chain from the first end of which it starts, or from either. near: of the two ends, those on the
+  /// edge of a near field, which moves as one with its wall: slope zero there.
   [[nodiscard]] ChainLaw along(OfChain const& law, std::array<bool, 2> const& near) const;
   [[nodiscard]] std::string name(Choice const& choice) const;
 
-  /// Of all laws of the user's own.
+  /// The knots of all laws of the user's own.
   [[nodiscard]] std::vector<double> const& knots() const { return knots_; }
   [[nodiscard]] std::vector<std::string> const& notes() const { return notes_; }
 
  private:
-  /// A kind, or patches.
+  /// What names an end of a law: a kind, or patches.
   struct End {
     std::string kind;
     std::vector<int> patches;  ///< as Known::patches

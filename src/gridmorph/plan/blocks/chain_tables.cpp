@@ -91,7 +91,7 @@ kernels::Segment make_segment(Mesh const& mesh, PlacedBox const& box) {
 
 namespace {
 
-/// One layer of an entity's nodes.
+/// Adds the sweep of one layer of an entity's nodes.
 void add_sweep(PlanContext const& context, LineTables& lines, std::vector<kernels::SkeletonSweep>& sweeps, int number,
                PlacedBox const& box, int entity, ParameterRange const& range, SkeletonRows const& rows) {
   kernels::Chain const& chain = lines.chains[number];

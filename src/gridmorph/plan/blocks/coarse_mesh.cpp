@@ -72,7 +72,7 @@ IndexRange places(CoarseMesh const& coarse, int zone, IndexRange const& fine) {
   return out;
 }
 
-/// Of the nodes of a range, which both sides keep.
+/// The map between the places of the nodes of a range, which both sides keep.
 IndexMap places(CoarseMesh const& coarse, int zone, IndexRange const& range, int donor_zone, IndexMap const& map) {
   return {map.orientation, places(coarse, zone, range.begin), places(coarse, donor_zone, map(range.begin))};
 }

@@ -14,7 +14,7 @@ namespace gridmorph {
 std::vector<ZoneCuts> sampled_planes(Mesh const& mesh, Links const& links, std::vector<CutPlane> const& planes,
                                      int every);
 
-/// Nodes that such planes have.
+/// The number of nodes that such planes have.
 Index count_nodes(std::vector<ZoneCuts> const& planes);
 
 struct CoarseMesh {
@@ -23,15 +23,16 @@ struct CoarseMesh {
   std::vector<ZoneCuts> planes;                ///< of the fine mesh, in the order of the indices of this one
   std::array<std::vector<double>, 3> lengths;  ///< GridLengths: along the lines of the fine mesh
 
-  /// Of the fine mesh.
+  /// The index that a node has in the fine mesh.
   [[nodiscard]] Index3 fine_index(int zone, Index3 const& p) const;
-  /// That of the fine mesh which the cell is one of; false where it stands for several.
+  /// Whether a cell is one of the fine mesh; false where it stands for several.
   [[nodiscard]] bool is_cell(int zone, Index3 const& cell) const;
-  /// Place of a plane of the fine mesh that was kept.
+  /// The place of a plane of the fine mesh that was kept.
   [[nodiscard]] int place(int zone, int axis, int fine_index) const;
 };
 
-/// Cost: one visit to each node of the lines kept, a share of about 12 / every^2 of the mesh.
+/// The mesh of the lines kept. Cost: one visit to each node of the lines kept, a share of about 12 / every^2 of the
+/// mesh.
 CoarseMesh coarsen(Mesh const& mesh, Links const& links, std::vector<ZoneCuts> planes);
 
 }  // namespace gridmorph

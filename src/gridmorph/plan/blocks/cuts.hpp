@@ -17,7 +17,7 @@ struct CutPlane {
   friend auto operator<=>(CutPlane const&, CutPlane const&) = default;
 };
 
-/// Their planes. Throws PlanError naming every cut in a zone that is not there, or not inside it.
+/// The planes of cuts. Throws PlanError naming every cut in a zone that is not there, or not inside it.
 std::vector<CutPlane> planes_of(Mesh const& mesh, std::vector<BlockCut> const& cuts);
 
 /// Sorted node indices of the cut planes along each axis, both zone ends included.

@@ -11,6 +11,7 @@ EdgeStar star_of(Lattice const& lattice, int edge_class) {
     Index3 const p = lattice.position(copy.entity);
     Index3 extent;
     for (int a = 0; a < 3; ++a) extent[a] = 2 * int(lattice.cuts()[zone][a].size()) - 1;
+    // Positions on cut planes are even, those between them odd: an edge is even along the two axes across it.
     int normals[2], found = 0;
     for (int a = 0; a < 3; ++a)
       if (p[a] % 2 == 0) normals[found++] = a;
@@ -21,6 +22,7 @@ EdgeStar star_of(Lattice const& lattice, int edge_class) {
         volume[normals[1]] += sv;
         face_u[normals[0]] += su;
         face_v[normals[1]] += sv;
+        // Beyond the end of the zone: another copy of the edge has the pieces there.
         if (volume[normals[0]] < 0 || volume[normals[0]] >= extent[normals[0]] || volume[normals[1]] < 0 ||
             volume[normals[1]] >= extent[normals[1]])
           continue;

@@ -78,7 +78,7 @@ double area_of(Mesh const& mesh, Patch const& patch) {
   return area;
 }
 
-/// Edge classes around a face class.
+/// The edge classes around a face class.
 std::set<int> edges_of(Lattice const& lattice, int face_class) {
   std::set<int> edges;
   for_closure(lattice, lattice.copies(face_class).front().entity, [&](int entity) {

@@ -19,8 +19,8 @@
 
 namespace gridmorph {
 
-/// Per patch, whether it is a wall at a gap: it ranks as a wall (`kinds`), an explicit rule other than `fixed` moves
-/// it, all grid lines off it end on walls that slip, and are on average shorter than half the root of the area of all
+/// Whether each patch is a wall at a gap: it ranks as a wall (`kinds`), an explicit rule other than `fixed` moves it,
+/// all grid lines off it end on walls that slip, and are on average shorter than half the root of the area of all
 /// patches that the rule moves towards such walls. Looks at 81 lines of a patch at most.
 std::vector<char> gap_walls(Mesh const& mesh, Links const& links, BoundaryMotion const& surface,
                             std::vector<PatchKind> const& kinds);
@@ -28,7 +28,7 @@ std::vector<char> gap_walls(Mesh const& mesh, Links const& links, BoundaryMotion
 class Gaps {
  public:
   Gaps() = default;
-  /// Cost: linear in the entities of the cut mesh.
+  /// Finds the gap layers. Cost: linear in the entities of the cut mesh.
   Gaps(Mesh const& mesh, Topology const& topology, ResolvedMotion const& motion, std::vector<char> const& walls);
 
   [[nodiscard]] bool any() const { return !axis_of_block_.empty(); }

@@ -20,7 +20,7 @@ class GridLengths {
     friend double distance(Place const& a, Place const& b) { return (*a.lengths)(a.node, b.node); }
   };
 
-  /// Straight.
+  /// Lengths that are straight between neighbouring nodes.
   explicit GridLengths(Mesh const& mesh) : mesh_(mesh) {}
   /// up_to[d]: of each node, the length along direction d from its zone's lower face.
   GridLengths(Mesh const& mesh, std::array<std::vector<double>, 3> up_to) : mesh_(mesh), up_to_(std::move(up_to)) {}

@@ -5,7 +5,7 @@
 
 namespace gridmorph {
 
-/// Borrows the tables.
+/// The chains and segments of a stage's lines, for walks on the host. Borrows the tables.
 inline kernels::LineTable<Kokkos::HostSpace> host_lines(LineTables const& lines) {
   using Host = Kokkos::HostSpace;
   kernels::LineTable<Host> table;

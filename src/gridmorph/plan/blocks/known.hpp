@@ -23,7 +23,7 @@ inline std::string_view end_kind_name(EndKind named_or_not) {
   return kind == periodic_end ? "periodic" : (kind == unknown_end ? "open" : to_string(PatchKind(kind)));
 }
 
-/// Per entity class of the lattice.
+/// What is known of each entity class of the lattice.
 struct Known {
   std::vector<char> known;
   std::vector<EndKind> kind;

@@ -34,7 +34,7 @@ int median_layers(Mesh const& mesh, Links const& links, std::vector<int> const& 
   return std::max(1, counts[counts.size() / 2]);
 }
 
-/// Of the face that a chain ends on, -1 inside the domain.
+/// The patch of the face that a chain ends on, -1 inside the domain.
 int patch_at_end(Topology const& topology, Chain const& chain) {
   auto const faces = topology.blocks.face_entities(topology.lattice, end_face(chain.steps.back(), 1));
   return topology.blocks.patch_of_face()[topology.lattice.class_of(faces.front())];
@@ -49,7 +49,7 @@ bool ends_periodic(Mesh const& mesh, Topology const& topology, Chain const& chai
   return interface >= 0 && mesh.interfaces[interface].periodic;
 }
 
-/// Every patch that ranks as a wall and that an explicit rule other than `fixed` moves.
+/// The walls that move: every patch that ranks as a wall and that an explicit rule other than `fixed` moves.
 std::vector<int> moving_walls(BoundaryMotion const& surface, std::vector<PatchKind> const& kinds) {
   ResolvedMotion const& motion = surface.motion();
   std::vector<int> walls;

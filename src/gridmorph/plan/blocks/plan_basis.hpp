@@ -26,7 +26,7 @@ struct PlanBasis {
   Gaps gaps;
 };
 
-/// Borrows the mesh. Throws as make_plan() does.
+/// The basis of plans of a mesh by these rules and options. Borrows the mesh. Throws as make_plan() does.
 PlanBasis plan_basis(Mesh const& mesh, Links const& links, BoundaryMotion const& surface, PlanOptions const& options);
 
 /// The grid lines that tables are made of: a mesh with the zones, patches, pieces and blocks of the basis in the same

@@ -159,6 +159,7 @@ std::optional<Stage> pole_stage(PlanContext const& context, ResolvedMotion const
       for (auto const& step : row) keep_in_place(context, faces[step.first], known, plan);
       continue;
     }
+    // Rows begin at a known end: what it does goes on to the other one where that is open.
     if (!known(first)) {
       std::reverse(row.begin(), row.end());
       for (auto& step : row) step.second = 1 - step.second;
@@ -208,6 +209,7 @@ std::optional<Stage> pole_stage(PlanContext const& context, ResolvedMotion const
               [](Index3 const& at) { return Index(at[1]); }, stage.ends);
         if (known(c)) continue;
         becomes.try_emplace(c, kind);
+        // What is known of an entity holds for all of its copies: one line writes it.
         if (writer.try_emplace(c, entity).second)
           add_writer(context, stage.lines, stage.sweeps, stage.volume, number, boxes[m], -1, entity, category, segment);
       }

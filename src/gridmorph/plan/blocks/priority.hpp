@@ -36,9 +36,9 @@ class Priority {
   [[nodiscard]] RankedChain rank(Chain chain) const;
   void add_quality(std::span<RankedChain> chains);
   void add_quality(RankedChain& chain) { add_quality(std::span(&chain, 1)); }
-  /// Best first, by the rule groups in the user's order, then by place.
+  /// Sorts chains, best first, by the rule groups in the user's order, then by place.
   void sort(std::vector<RankedChain>& chains) const;
-  /// Equal in the first group (chains of one stage).
+  /// Whether two chains are equal in the first group, so that they are chains of one stage.
   [[nodiscard]] bool same_rank(RankedChain const& a, RankedChain const& b) const;
   /// Whether the quality is what chains are ranked by first: then all of them need it.
   [[nodiscard]] bool quality_leads() const;

@@ -92,7 +92,7 @@ class EndFinder {
     }
   }
 
-  /// One line off an end wall, as far as the wall goes in this frame.
+  /// Walks one line off an end wall, as far as the wall goes in this frame.
   void walk(LinePlace place, int face_class) {
     WallRoots::Place const start = at(place);
     kernels::EndWall end;
@@ -130,7 +130,7 @@ class EndFinder {
   [[nodiscard]] Vec3 position(LinePlace const& place) const {
     return context_.mesh.coordinates[context_.mesh.zones[place.zone].node(place.at)];
   }
-  /// Of the slot of one copy -> of the slot of another, in one zone.
+  /// The rotation from the frame of the slot of one copy to that of the slot of another, in one zone; -1: none.
   [[nodiscard]] std::int32_t frame(EntityCopy const& from, EntityCopy const& to) const {
     if ((!from.moved && !to.moved) || same_rotation(from.transform.rotation, to.transform.rotation)) return -1;
     return context_.rotations.number(transpose(to.transform.rotation) * from.transform.rotation);

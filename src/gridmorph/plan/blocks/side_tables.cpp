@@ -41,6 +41,7 @@ std::vector<kernels::Junction> known_around(Topology const& topology, ChainLayou
   int const n_blocks = int(layout.first_piece.size()) - 1;
   std::vector<kernels::Junction> junctions;
   for (int m = 0; m <= n_blocks; ++m) {
+    // The last junction is the upper end of the last block, behind which nothing is along.
     bool const last = m == n_blocks;
     int const ps = last ? layout.n[0] - 1 : layout.first_piece[m];
     int const end = last ? 2 : 0;

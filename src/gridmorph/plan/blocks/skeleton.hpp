@@ -34,7 +34,7 @@ struct SkeletonRows {
   Index3 at{0, 0, 0}, step_p{0, 0, 0}, step_q{0, 0, 0};
 };
 
-/// Of the zone that the rows lie in.
+/// The index of node (p, q) in the zone that the rows lie in.
 inline Index3 node_at(SkeletonRows const& rows, int p, int q) {
   Index3 at{};
   for (int d = 0; d < 3; ++d) at[d] = rows.at[d] + p * rows.step_p[d] + q * rows.step_q[d];
@@ -55,7 +55,7 @@ class Skeleton {
   [[nodiscard]] Index size() const { return n_slots_; }
   /// Rows of one occurrence of an entity; nothing when it has no nodes. Slots of a volume's layers follow one another.
   [[nodiscard]] std::optional<SkeletonRows> rows(int entity, int layer = 0) const;
-  /// From slots to all nodes of the mesh that belong to the skeleton, each in its zone's frame.
+  /// The copies from slots to all nodes of the mesh that belong to the skeleton, each in its zone's frame.
   [[nodiscard]] std::vector<kernels::NodeCopy> to_nodes(RotationTable& rotations) const;
 
  private:

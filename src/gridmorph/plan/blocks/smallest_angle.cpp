@@ -70,7 +70,7 @@ void compare(Row const& fa, int fa_at, Row const& ba, int ba_at, Row const& fb, 
   }
 }
 
-/// One plane of constant k of a box.
+/// The largest cosine in one plane of constant k of a box.
 double largest_cosine(Mesh const& mesh, NodeBox const& box, int k) {
   Zone const& zone = mesh.zones[box.zone];
   IndexRange const& r = box.nodes;

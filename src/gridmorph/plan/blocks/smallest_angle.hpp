@@ -15,8 +15,8 @@ struct NodeBox {
   IndexRange nodes;
 };
 
-/// Per box, the largest cosine between grid edges of different directions that meet at one of its nodes, over the edges
-/// inside the box: the cosine of the smallest angle of the faces of its cells, which is never above 90 degrees.
+/// The largest cosine of each box between grid edges of different directions that meet at one of its nodes, over the
+/// edges inside the box: the cosine of the smallest angle of the faces of its cells, which is never above 90 degrees.
 /// Edges of no length have no angle. The result does not depend on the number of threads, nor on how zones are numbered
 /// or turned.
 ///

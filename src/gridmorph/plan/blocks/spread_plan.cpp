@@ -175,8 +175,9 @@ struct RuleChains {
   std::vector<Entry> chains;
 };
 
-/// In the order they are to be spread. Planes and axial constraints come first: their corrections leave other planes
-/// alone, but not curved surfaces, which are put right last and by lines that lie in those planes.
+/// The chains of every rule, in the order they are to be spread. Planes and axial constraints come first: their
+/// corrections leave other planes alone, but not curved surfaces, which are put right last and by lines that lie in
+/// those planes.
 std::vector<RuleChains> chains_by_rule(Topology const& topology, ResolvedMotion const& motion,
                                        std::vector<int> const& surface_of_patch, std::vector<Candidate>& candidates) {
   using Key = std::pair<bool, int>;  // (curved, rule)

@@ -96,7 +96,8 @@ kernels::Chain device_chain(ChainLayout const& layout, ChainLaw const& law, bool
   return c;
 }
 
-/// From a body to what is at rest; between two ends that turn, about what they have in common.
+/// Sets how a turn fades far from a wall: from a body to what is at rest; between two ends that turn, about what they
+/// have in common.
 void set_far_law(double reach, bool one_body, kernels::Chain& device) {
   if (device.turned_ends == 3) {
     device.turn = one_body ? kernels::TurnLaw::common : kernels::TurnLaw::c1;
@@ -106,7 +107,7 @@ void set_far_law(double reach, bool one_body, kernels::Chain& device) {
   }
 }
 
-/// Ends that turn with a body turn about its centre.
+/// Sets the pivots of a chain's ends: those that turn with a body turn about its centre.
 void set_pivots(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
                 kernels::Chain const& device, LineTables& lines) {
   for (int end = 0; end < 2; ++end)

@@ -35,7 +35,7 @@ void for_end_pieces(ChainLayout const& layout, int axis, int end, Visit const& v
       for (int ps = first[0]; ps <= last[0]; ++ps) visit(ps, pa, pb);
 }
 
-/// All nodes of the chain at one of its ends along an axis.
+/// Visits all nodes of the chain at one of its ends along an axis.
 template <class Visit>
 void for_end_nodes(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int axis, int end,
                    Visit const& visit) {

@@ -14,7 +14,7 @@ void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLay
 void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainLayout const& layout, int number,
                           Stage& stage);
 
-/// Near fields whose outer edge makes no share of the turn have one end that turns.
+/// Leaves out the outer edges of near fields that make no share of the turn: those fields have one end that turns.
 void leave_out_outer_edges_at_rest(WallRoots const& roots, Stage& stage);
 
 }  // namespace gridmorph

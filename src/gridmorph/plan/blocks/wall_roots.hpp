@@ -64,7 +64,7 @@ class WallRoots {
 
   explicit WallRoots(PlanContext const& context) : context_(context), is_wall_(context.mesh.patches.size(), 0) {}
 
-  /// Walls of one near field; `turn`: share of their turn that the outer edge makes.
+  /// Adds the walls of one near field; `turn`: share of their turn that the outer edge makes.
   void add_walls(std::vector<int> const& patches, double turn);
   /// Nodes at one place turn alike: those of edges that have no length. Call after all walls.
   void join_coincident();
@@ -72,16 +72,16 @@ class WallRoots {
   /// nearest node along the walls that has none so near: what is between them is no direction. Call after
   /// find_bodies(). Cost O(n), and O(n log n) in such nodes.
   void turn_as_resolved(CoordinatePrecision const& precision, double roundings);
-  /// How long an edge has to be to have a direction, since that call; 0 before.
+  /// How long an edge has to be to have a direction, since turn_as_resolved() was called; 0 before.
   [[nodiscard]] double resolved_arm() const { return resolved_arm_; }
   /// Finds the bodies: walls that touch. Call after all walls.
   void find_bodies();
-  /// The places of bodies. Call after find_bodies(), where all zones share one frame.
+  /// Finds the centres and sizes of bodies. Call after find_bodies(), where all zones share one frame.
   void find_centres();
   /// Marks what is on the walls as coming with a rotation.
   void mark(Known& known) const;
 
-  /// -1: none.
+  /// The body of a root; -1: none.
   [[nodiscard]] int body(std::size_t root) const { return body_.empty() ? no_body : body_[root]; }
   /// The nodes of bodies whose zones share one frame: rotations in several have no mean.
   [[nodiscard]] TurningRoots turning_roots() const;
@@ -93,15 +93,15 @@ class WallRoots {
   };
   /// Some places of every body, about `most` of all in all; they depend on the numbering of nodes.
   [[nodiscard]] std::vector<BodySample> sample_bodies(Index most) const;
-  /// The mean of its walls over their area.
+  /// The centre of a body: the mean of its walls over their area.
   [[nodiscard]] Vec3 const& centre_of_body(int body) const { return centre_[body]; }
-  /// Diagonal of the box around the largest body, 0 where none has been found.
+  /// The diagonal of the box around the largest body, 0 where none has been found.
   [[nodiscard]] double body_size() const { return body_size_; }
 
   [[nodiscard]] std::vector<RootNode> const& nodes() const { return nodes_; }
   [[nodiscard]] std::vector<RootFace> const& faces() const { return faces_; }
   [[nodiscard]] bool is_wall(int patch) const { return is_wall_[patch] != 0; }
-  /// -1: none.
+  /// The root of a slot; -1: none.
   [[nodiscard]] std::int32_t of_slot(Index slot) const;
   [[nodiscard]] Place at(Index node) const;
   void set_thickness(std::int32_t root, double thickness) { nodes_[root].thickness = thickness; }
@@ -116,7 +116,7 @@ class WallRoots {
   /// each.
   template <class Visit>
   void for_nodes(Visit const& visit) const;
-  /// Of the nodes of all walls.
+  /// The largest coordinate of the nodes of all walls.
   [[nodiscard]] double largest_coordinate() const;
 
   PlanContext const& context_;

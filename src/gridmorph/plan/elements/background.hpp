@@ -87,7 +87,8 @@ struct FarRows {
 FarRows lattice_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
                      std::span<Index32 const> nodes);
 
-/// The same for any background: lattice_rows() where it can, else in the cell that ElementLocator finds.
+/// Rows for points in any background: those of lattice_rows() where it can make them, else in the cell that
+/// ElementLocator finds.
 FarRows background_rows(HostInstance const& host, Background const& background, Coordinates const& coordinates,
                         std::span<Index32 const> nodes);
 

@@ -40,7 +40,7 @@ struct Chart {
   Vec3 axis{1, 0, 0}, zero{0, 1, 0}, quarter{0, 0, 1};  ///< right-handed, unit; angles begin at `zero`
   double radius = 1;                                    ///< cylindrical: of which angles are arcs; disc: of its rim
 
-  /// Of one coordinate, over the coordinates that come before it in `order`.
+  /// The limits of one coordinate, over the coordinates that come before it in `order`.
   struct Limits {
     std::array<int, 2> over{-1, -1};  ///< coordinates; -1: none
     std::array<double, 2> first{}, step{1, 1};
@@ -55,9 +55,9 @@ struct Chart {
   /// Chart coordinates of a place, and the place of chart coordinates; beyond the tables their ends count.
   [[nodiscard]] Vec3 operator()(Vec3 const& place) const;
   [[nodiscard]] Vec3 place(Vec3 const& coordinates) const;
-  /// Of all nodes; the same memory where nothing changes.
+  /// Chart coordinates of all nodes; the same memory where nothing changes.
   [[nodiscard]] Coordinates mapped(HostInstance const& host, Coordinates const& coordinates) const;
-  /// "box", "box between surfaces", "annular sector", "disc", for reports.
+  /// The name of the chart for reports: "box", "box between surfaces", "annular sector", "disc".
   [[nodiscard]] std::string name() const;
 };
 

@@ -26,7 +26,7 @@ std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& co
 
 namespace {
 
-/// Least of the neighbours, then means, at the wall nodes where columns stand.
+/// Values made smooth by the least of the neighbours, then by means, at the wall nodes where columns stand.
 std::vector<double> smooth(NodeGraph const& graph, std::vector<double> const& whole, std::vector<double> const& most) {
   constexpr int sweeps_of_least = 3, sweeps_of_mean = 20;
   std::vector<Index32> walls;

@@ -14,9 +14,9 @@ namespace gridmorph {
 ///     room = min(gap / 3, max(gap - 2 motion, gap / 10))
 double room_in_gap(double gap, double motion);
 
-/// (n_nodes) For wall nodes where the nearest other boundary lies ahead (within 60 degrees of where the column leads),
-/// its distance; infinite elsewhere: a boundary beside, on which the wall ends, leaves no gap. Cost O(nodes of
-/// columns).
+/// The gap ahead of each node (n_nodes): for wall nodes where the nearest other boundary lies ahead (within 60 degrees
+/// of where the column leads), the distance to it; infinite elsewhere: a boundary beside, on which the wall ends,
+/// leaves no gap. Cost O(nodes of columns).
 std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& columns, NearestSource const& from_other);
 
 /// Where columns end, by their wall nodes; 0 where there is none.
@@ -25,11 +25,11 @@ struct ColumnEnds {
   std::vector<double> rise;    ///< (n_nodes) as Columns::full_rise
 };
 
-/// Not above `most`, and without the jumps between neighbours whose columns end in different layers. What varies with
-/// the share of the height, and what begins at its end, must not jump. First the least of the neighbours, so that
-/// columns are hardly ever longer. Neither lengths nor rises would do alone, so a column ends where the higher of both
-/// asks for it: beside the edge of a blade lines may lean by 80 degrees, and columns rise like their neighbours and are
-/// six times as long. Cost O(wall nodes).
+/// The ends of columns, not above `most`, and without the jumps between neighbours whose columns end in different
+/// layers. What varies with the share of the height, and what begins at its end, must not jump. First the least of the
+/// neighbours, so that columns are hardly ever longer. Neither lengths nor rises would do alone, so a column ends where
+/// the higher of both asks for it: beside the edge of a blade lines may lean by 80 degrees, and columns rise like their
+/// neighbours and are six times as long. Cost O(wall nodes).
 ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
 
 /// Columns up to their ends; what is above belongs to the layers.

@@ -33,10 +33,10 @@ struct ColumnExtent {
   double thickness = 0;
 };
 
-/// From each face of `faces` (numbers in UnstructuredTopology::boundary, any order) through prisms that stand on their
-/// triangles, hexahedra and prismatic polyhedra (mesh/opposite_side.hpp), layer by layer; in 2-D through
-/// quadrilaterals. A node that several columns reach belongs to the one that reaches it in the lowest layer, then to
-/// the first face. Known nodes end a column. Cost O(cells of the columns).
+/// The columns of walls: from each face of `faces` (numbers in UnstructuredTopology::boundary, any order) through
+/// prisms that stand on their triangles, hexahedra and prismatic polyhedra (mesh/opposite_side.hpp), layer by layer; in
+/// 2-D through quadrilaterals. A node that several columns reach belongs to the one that reaches it in the lowest
+/// layer, then to the first face. Known nodes end a column. Cost O(cells of the columns).
 Columns make_columns(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                      std::vector<Index32> const& faces, std::vector<ColumnExtent> const& extents,
                      std::vector<std::uint8_t> const& is_known);

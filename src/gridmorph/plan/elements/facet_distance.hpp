@@ -10,7 +10,8 @@
 
 namespace gridmorph {
 
-/// Of edges (2-D), triangles, and polygons as triangles around the mean of their corners. Making it: O(n log n); host.
+/// The distance from a set of edges (2-D), triangles, and polygons as triangles around the mean of their corners.
+/// Making it: O(n log n); host.
 class FacetDistance {
  public:
   /// faces: lists of nodes, in their order around each face.

@@ -72,6 +72,7 @@ class Boundary {
       for (std::size_t a = 0; a < dimension_; ++a)
         if (a != c) whole *= box.high[a] - box.low[a];
       for (std::size_t s = 0; s < 2; ++s)
+        // The box along the axes is there for any mesh: such a mesh ends on a side only if boundary covers most of it.
         if (!out.domain.chart.is_identity() || on[c][s] > 0.5 * whole) out.domain.side[c][s] = Side::stands;
     }
     return out;
@@ -187,7 +188,7 @@ class Boundary {
   }
 
  private:
-  /// Of the boundary's nodes, in their order here.
+  /// Chart coordinates of the boundary's nodes, in their order here.
   [[nodiscard]] std::vector<Point> places(Chart const& chart) const {
     std::vector<Point> q(nodes_.size());
     for_all(host_, "gridmorph::fit_domain", Index(nodes_.size()),
@@ -254,6 +255,7 @@ class Boundary {
       most = std::max(most, width);
       sum += width;
     }
+    // Where the room in a coordinate shrinks too much, a lattice in it would be squeezed as much.
     if (!(least > most / 6)) return {};
     limits.width = sum / double(size);
     return limits;

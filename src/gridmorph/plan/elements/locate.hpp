@@ -6,9 +6,9 @@
 // (kernels/element_place.hpp). Nothing depends on the number of threads, on how the tree came out, or on the other
 // points.
 //
-//   Location where = ...;                                   // of a point, by ElementLocator
-//   InterpolationOperator rows = interpolation_rows(exec, mesh, where, nodes);  // displacement of `nodes` from that of
-//   the mesh's nodes
+//   Location where = ...;  // of a point, by ElementLocator
+//   // The displacement of `nodes` from that of the mesh's nodes.
+//   InterpolationOperator rows = interpolation_rows(exec, mesh, where, nodes);
 //
 // Polyhedra are cut into tetrahedra between the mean of their nodes, the mean of the nodes of a face, and an edge of
 // that face. The weights of both means are handed on to their nodes in equal parts: never negative, sum one, linear
@@ -74,7 +74,7 @@ class ElementLocator {
   /// `elements`: the candidates, each once, in any order. On the host the mesh must outlive the locator. Throws
   /// MeshError for numbers of elements that the mesh does not have. Fences.
   ElementLocator(Exec const& exec, Mesh const& mesh, std::span<Index32 const> elements);
-  /// All elements of the mesh.
+  /// A locator in all elements of the mesh.
   ElementLocator(Exec const& exec, Mesh const& mesh);
 
   /// out(n): where points(n) is. `out` is at least as long as `points`.

@@ -74,8 +74,8 @@ struct NearestPlace {
   Vec3 towards;
 };
 
-/// Of an element that does not contain the point; no element when that is further than `limit`. `towards`: from the
-/// point to the best place so far.
+/// The nearest place of an element that does not contain the point; no element when that is further than `limit`.
+/// `towards`: from the point to the best place so far.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION NearestPlace nearest(LocatorTables<MemorySpace> const& t, Index32 element, Vec3 const& p,
                                             Vec3 const& towards, double limit) {

@@ -74,6 +74,7 @@ void UnstructuredPlanner::take_boundary() {
   plan.surfaces = along_axes(plan.axes, b.surfaces());
   plan.given_slip = b.given_slip;
   for (std::size_t k = 0; k < b.given_slip.of.size(); ++k) {
+    // A node that several surfaces hold is left alone as far as the least exact of them allows.
     double tolerance = 0;
     for (Index s = b.given_slip.first[k]; s < b.given_slip.first[k + 1]; ++s)
       tolerance = std::max(tolerance, given_tolerance(plan.surfaces[std::size_t(b.given_slip.surface[std::size_t(s)])],

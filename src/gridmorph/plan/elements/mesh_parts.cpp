@@ -124,7 +124,7 @@ class PartTaker {
     to.first_face.push_back(to.faces.size());
   }
 
-  /// Their places in the part.
+  /// The numbers that nodes of the mesh have in the part; valid until `room` is used again.
   std::span<Index32 const> placed(std::span<Index32 const> nodes, std::vector<Index32>& room) const {
     room.clear();
     for (Index32 const n : nodes) room.push_back(place(n));

@@ -10,7 +10,7 @@
 
 namespace gridmorph::detail {
 
-/// (n_nodes) The number of the part that a node belongs to, -1 where no element has it. Elements that share a node hang
+/// The number of the part (n_nodes) that a node belongs to, -1 where no element has it. Elements that share a node hang
 /// together, and so do nodes at one place and those that a connection pairs, periodic ones too. `cuts`: (n_nodes) nodes
 /// at one place, by the one that carries them, that do not join the zones on their two sides; empty: none. Parts are
 /// counted in the order of their first nodes. Cost O(corners of all elements).

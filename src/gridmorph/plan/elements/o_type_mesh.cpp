@@ -225,7 +225,7 @@ class OTypeMesh {
     return sheet * (Index(side_ + 1) * (side_ + 1) + Index(radial_.size()) * 4 * side_) + point;
   }
 
-  /// (ring, around, along) is right-handed.
+  /// Adds a zone of rings; (ring, around, along) is right-handed.
   void add_ring_zone(int quarter, int from_ring, int to_ring, int from, int to, bool low, bool high) {
     ZonePoints zone;
     Index3 const extent{to_ring - from_ring + 1, side_ + 1, to - from + 1};
@@ -360,7 +360,7 @@ class OTypeMesh {
       }
   }
 
-  /// Every corner of every cell must be right-handed.
+  /// Checks that every corner of every cell is right-handed.
   void check() const {
     for (Zone const& zone : mesh_.zones)
       for (int k = 0; k + 1 < zone.extent[2]; ++k)

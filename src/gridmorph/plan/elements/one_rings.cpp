@@ -14,8 +14,8 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// Of surfaces inside the mesh one side, neighbours the same one, whatever the numbers of their faces: 1 for faces of
-/// the other.
+/// Which side of surfaces inside the mesh is left out: neighbours have the same one, whatever the numbers of their
+/// faces. 1 for its faces.
 std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTopology const& topology,
                                                std::vector<Index32> const& faces) {
   auto const& behind = topology.boundary.behind;

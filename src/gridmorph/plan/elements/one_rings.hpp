@@ -7,9 +7,9 @@
 
 namespace gridmorph::detail {
 
-/// For each of `roots`, pairs (a, b) of nodes: in 3-D its neighbours behind and ahead in each wall face around it, so
-/// that the sum of (a - root) x (b - root) is normal to the wall; in 2-D the ends of each wall edge at it. Cost O(faces
-/// around).
+/// The nodes around each of `roots` on the wall, as pairs (a, b): in 3-D its neighbours behind and ahead in each wall
+/// face around it, so that the sum of (a - root) x (b - root) is normal to the wall; in 2-D the ends of each wall edge
+/// at it. Cost O(faces around).
 CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                         std::vector<Index32> const& faces, std::vector<Index32> const& roots);
 

@@ -12,8 +12,8 @@ namespace gridmorph::detail {
 
 namespace {
 
-/// By the mean of their corners: a node that several columns reach belongs to the first face, however faces are
-/// numbered.
+/// Sorts faces by the mean of their corners: a node that several columns reach belongs to the first face, however faces
+/// are numbered.
 void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::vector<Index32>& faces) {
   std::vector<Vec3> middle(std::size_t(topology.boundary.size()));
   for (Index32 const f : faces) {
@@ -25,7 +25,7 @@ void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::
             [&](Index32 a, Index32 b) { return is_before(middle[std::size_t(a)], a, middle[std::size_t(b)], b); });
 }
 
-/// Per node of the mesh its place in a list, -1: not in it.
+/// The place of each node of the mesh in a list, -1: not in it.
 std::vector<Index32> places_of_nodes(std::vector<Index32> const& list, Index n_nodes) {
   std::vector<Index32> place(std::size_t(n_nodes), -1);
   for (std::size_t k = 0; k < list.size(); ++k) place[std::size_t(list[k])] = Index32(k);

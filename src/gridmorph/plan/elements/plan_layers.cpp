@@ -37,6 +37,7 @@ void UnstructuredPlanner::plan_layers() {
   Mask seeds = drives_;
   for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
   Mask wanted = near_;
+  // Seeds have their motion already, and copies of a node get that of the node that carries it.
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());

@@ -18,7 +18,7 @@ std::size_t count_of(std::vector<Index32> const& number) {
   return std::size_t(largest + 1);
 }
 
-/// From ascending slots to the order that the part has them in.
+/// Puts what belongs to ascending slots in the order that the part has them in.
 void order_as(std::vector<Index32> const& slots, CommonMotion& common) {
   std::vector<Index32> ascending = slots;
   std::sort(ascending.begin(), ascending.end());

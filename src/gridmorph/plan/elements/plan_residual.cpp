@@ -128,6 +128,7 @@ void UnstructuredPlanner::plan_other_nodes() {
   Mask in_column = mask();
   for (auto const* columns : {&standing_, &sliding_})
     for (Index32 const n : columns->node) in_column[std::size_t(n)] = 1;
+  // Boundary nodes, columns on walls that stand, columns on walls that slip: UnstructuredPlan has them in this order.
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
     if (!is_other_[std::size_t(n)] || in_column[std::size_t(n)]) continue;
     plan.residual_nodes.push_back(n);

@@ -132,6 +132,7 @@ std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
   std::vector<Vec3> turn(plan.driving.size());
   kernels::WallTurn<Host, Vec3> const turns{walls, {x}, {x, u.data()}, turn.data()};
   for_all(host_, "gridmorph::wall_turn", Index(turn.size()), [&](Index r) { turns(r); });
+  // A body's shift is what it moves by beyond the mean of all other boundaries.
   Vec3 shift_of_others;
   for (std::size_t k = all.wall.size(); k < all.slot.size(); ++k)
     shift_of_others += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
@@ -144,6 +145,7 @@ std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
     for (; k < end; ++k) {
       shift += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
       auto const q = kernels::quaternion_of(turn[std::size_t(all.wall[k])]);
+      // The mean of the nodes' rotations is the one that turns unit vectors most nearly as all of them do.
       for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) s.add(all.weight[k] * e, e + q.turned(e));
     }
     auto const q = kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[b]));

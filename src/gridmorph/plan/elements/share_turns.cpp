@@ -44,7 +44,7 @@ class Places {
  public:
   explicit Places(Boundaries const& b);
 
-  /// For one thread.
+  /// Room to compute shares in, for one thread.
   struct Room {
     std::vector<int> start;
     std::vector<double> distance;  ///< (moves, groups) of the place that each move takes to the node
@@ -54,7 +54,7 @@ class Places {
     std::vector<double> seen, closeness, parts, beyond;
   };
   [[nodiscard]] Room room() const;
-  /// room.turn and room.shift at a place.
+  /// Sets room.turn and room.shift to the shares at a place.
   void shares(Vec3 const& x, Room& room) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace gridmorph {
 
-/// Of some walls, each a list of edges in a plane z = constant, the closeness
+/// The closeness of some walls, each a list of edges in a plane z = constant,
 ///
 ///   C(x) = integral along the wall of ds / |y - x|^2
 ///
@@ -31,7 +31,7 @@ class Surroundings {
   Surroundings(HostInstance const& host, Coordinates const& coordinates, std::span<CsrGraph const> walls,
                std::span<FacetDistance const> from, Vec3 const& centre, double size);
 
-  /// C d / pi of each wall at a place; beyond the lattice that of its nearest place.
+  /// Evaluates C d / pi of each wall at a place; beyond the lattice that of its nearest place.
   void operator()(Vec3 const& p, std::span<double> seen) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace gridmorph {
 namespace {
 
-/// Q of the law.
+/// The function Q of the law of turn_share().
 double growth(double s, double early) { return std::log1p(s) - early * std::log1p(s / early); }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace gridmorph {
 namespace {
 
-/// What boundary nodes are, by number.
+/// The kinds of boundary nodes, by number.
 struct NodeKinds {
   enum Kind : std::uint8_t { none, given, drives, slips, periodic };
   std::vector<std::uint8_t> kind;

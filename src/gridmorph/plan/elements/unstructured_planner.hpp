@@ -23,7 +23,7 @@ namespace gridmorph::detail {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What the steps share; run() calls them in their order.
+/// Plans a mesh of elements in steps, which share what is here; run() calls them in their order.
 class UnstructuredPlanner {
  public:
   UnstructuredPlanner(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
@@ -53,7 +53,7 @@ class UnstructuredPlanner {
 
   // make_unstructured_plan.cpp
   void take_boundary();
-  /// Of a mesh, or of a part of it, as a whole.
+  /// Plans a mesh, or a part of it, as a whole.
   void plan_whole();
   void measure_distances();
 
@@ -63,32 +63,32 @@ class UnstructuredPlanner {
     Mask nodes;
     std::optional<CommonMotion> common;
   };
-  /// None where the mesh is one part without a motion in common.
+  /// The parts of the mesh; none where it is one part without a motion in common.
   [[nodiscard]] std::vector<Part> find_parts() const;
-  /// Of the nodes with a number in a list, that motion, where boundaries have one in common.
+  /// The motion in common of the nodes with the number `of` in a list, where their boundaries have one.
   [[nodiscard]] std::optional<CommonMotion> motion_in_common(std::vector<Index32> const& number, Index32 of,
                                                              std::vector<Index32> const& slots) const;
   [[nodiscard]] CommonLimits common_limits(std::vector<Index32> const& number, Index32 of) const;
   void plan_parts(std::vector<Part> parts);
   void plan_part(Part part);
-  /// Its columns, residual nodes and report, in numbers of the mesh.
+  /// Takes over the columns, residual nodes and report of a part, in numbers of the mesh.
   void take_part(PartPlan const& part, std::vector<Index32> const& elements, PreparedUnstructured const& planned);
 
   // plan_columns.cpp
-  /// Faces of moving walls with the boundary layer that a user gave their patch.
+  /// Finds the faces of moving walls with the boundary layer that a user gave their patch.
   void find_driving_faces();
   void find_columns();
-  /// Columns are as long as a user says; otherwise they leave room in gaps.
+  /// The heights that columns may have: as long as a user says; otherwise they leave room in gaps.
   [[nodiscard]] std::vector<double> most_heights() const;
-  /// Directions of the columns on driving nodes, before columns are cut.
+  /// Finds the directions of the columns on driving nodes, before columns are cut.
   void find_wall_lines();
   void plan_columns();
-  /// Columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of walls that
-  /// slip: they go along.
+  /// Finds the columns of walls that stand: they are held in place, as far as moving walls leave room. Then those of
+  /// walls that slip: they go along.
   void find_held_columns();
-  /// From the ends of those columns, and from boundaries beyond the moving walls.
+  /// Measures distances from the ends of the held columns, and from boundaries beyond the moving walls.
   void measure_others();
-  /// No higher than leaves room where moving walls come nearer by `motion`.
+  /// Columns on walls, no higher than leaves room where moving walls come nearer by `motion`.
   [[nodiscard]] Columns columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const;
   [[nodiscard]] Index n_held() const { return standing_.size() + sliding_.size(); }
   /// The extent that a user gave the boundary layer on a face's patch, or the default one.
@@ -96,23 +96,24 @@ class UnstructuredPlanner {
 
   /// How the columns on driving nodes follow them.
   [[nodiscard]] std::vector<BoundaryLayer::Mode> modes_of_walls() const;
-  /// How moving walls turn at their nodes.
+  /// Plans how moving walls turn at their nodes.
   void plan_one_rings();
 
   // plan_turns.cpp
-  /// Needs the faces of the walls. What motion the offset and columns reckon with is then what turns leave of it.
+  /// Finds the bodies that turn; needs the faces of the walls. What motion the offset and columns reckon with is then
+  /// what turns leave of it.
   void find_turning_bodies();
   void add_turning_body(WallBody const& body);
-  /// All boundary nodes whose displacement is known but for those of the bodies: what shifts are measured against.
+  /// Adds all boundary nodes whose displacement is known but for those of the bodies: what shifts are measured against.
   void add_other_boundaries();
   /// The largest displacement less the turns of the bodies, and less their shifts too.
   [[nodiscard]] std::pair<double, double> reach_beyond_turns() const;
-  /// Needs the columns.
+  /// Plans the turns of bodies; needs the columns.
   void plan_turns();
   /// What nodes have their shares whatever their distances are: those of turns, or all.
   enum Settled : std::uint8_t { nothing, turns, all };
   // share_turns.cpp
-  /// Of all nodes that are not settled.
+  /// Finds the shares in turns and shifts of all nodes that are not settled.
   void share_turns(Mask const& settled);
 
   // plan_domain.cpp
@@ -123,48 +124,49 @@ class UnstructuredPlanner {
   double offset();
   void find_regions();
   void classify_by_wrap();
-  /// The user's background mesh says where the wrap is; the moving walls must be in it.
+  /// Classifies elements by the user's background mesh, which says where the wrap is; the moving walls must be in it.
   void classify_by_background();
   void take_background(Background background);
 
   // plan_layers.cpp
   std::function<double(Index32, Index32)> layer_weight();
   void plan_layers();
-  /// The smooth part covers the wrap; what it misses fades over a few of its cells.
+  /// Plans the smooth part of the walls' motion: it covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
   /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a
   /// passage that follow its blade: were the near field to learn of them from the residual alone, it would be torn
   /// where they meet the wall.
   [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
-  /// By layers turns fade from the ends of the columns on.
+  /// Plans how turns are passed on by layers: they fade from the ends of the columns on.
   void plan_layer_turns();
-  /// Distance from the end of the column on the nearest wall node.
+  /// The distance of a node from the end of the column on the nearest wall node.
   [[nodiscard]] double beyond_column(std::size_t n) const;
 
   // plan_background.cpp
   void plan_background();
-  /// The outer box moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is shifted
-  /// exactly.
+  /// Plans the outer box, which moves as the prescribed boundary nearest to it: a mesh that is shifted as a whole is
+  /// shifted exactly.
   void plan_outer_box();
   void plan_projections();
-  /// Wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.
+  /// Finds wrap nodes in the elements that hold them; rows name representatives, so that layers reach their nodes.
   void project_wrap();
 
   // plan_residual.cpp
   void plan_residual();
   /// Share of each node in the area of the boundary; nodes that are on no boundary face have a mean one.
   [[nodiscard]] std::vector<double> areas(std::vector<Index32> const& nodes) const;
-  /// d / (d + distance from `from`), d being the distance from the end of the moving wall's column.
+  /// The share d / (d + distance from `from`) of the residual that a node takes, d being the distance from the end of
+  /// the moving wall's column.
   [[nodiscard]] double fade(std::size_t n, NearestSource const& from) const;
   std::function<double(Index32, Index32)> inverse_distance() const;
   void plan_other_nodes();
-  /// What boundaries ask of further nodes of second-order elements.
+  /// Plans what boundaries ask of further nodes of second-order elements.
   void plan_middle_nodes();
-  /// What nodes that move as one are held on.
+  /// Plans what nodes that move as one are held on.
   void plan_joint_nodes();
-  /// Entries of BoundaryConditions::images by their owners, of further nodes or of all others.
+  /// Groups entries of BoundaryConditions::images by their owners, of further nodes or of all others.
   void group_images(bool middle, std::vector<Index32>& owners, CsrGraph& images_of_owner) const;
-  /// What boundaries with a rule ask for, at nodes that slide or have images.
+  /// Plans what boundaries with a rule ask for, at nodes that slide or have images.
   void plan_start();
 
   HostInstance host_;

@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-/// What a node takes for its nearest source.
+/// The source that a node takes for its nearest one, and its distance.
 struct Found {
   double squared = std::numeric_limits<double>::infinity();  ///< distance
   Index32 source = -1;                                       ///< place in the list of sources; their number: none
@@ -101,7 +101,7 @@ class Spreading {
     return nearest;
   }
 
-  /// What list(k, out) adds for 0 <= k < count, part by part side by side.
+  /// Gathers what list(k, out) adds for 0 <= k < count, part by part side by side.
   template <class Item, class List>
   std::vector<Item> gather(char const* label, Index count, List const& list) {
     constexpr Index part = 256;
@@ -151,6 +151,8 @@ class Spreading {
             }
             if (own.source != none_.source && !is_better(offer, own)) continue;
             std::atomic_ref<Index32> const listed(listed_[std::size_t(m)]);
+            // A node beside several changes is listed once. Whichever comes first does it: best() looks at all
+            // neighbours.
             if (listed.load(std::memory_order_relaxed) == sweep_ ||
                 listed.exchange(sweep_, std::memory_order_relaxed) == sweep_)
               continue;
@@ -161,7 +163,7 @@ class Spreading {
     return out;
   }
 
-  /// When all within reach is known: the nearest of the nodes that wait, and those hardly further away.
+  /// What comes next when all within reach is known: the nearest of the nodes that wait, and those hardly further away.
   [[nodiscard]] std::vector<Change> go_further() {
     detail::for_all(host_, "gridmorph::nearest_source::go_further", std::ssize(waiting_), [&](Index k) {
       auto& [node, found] = waiting_[std::size_t(k)];
@@ -186,7 +188,8 @@ class Spreading {
     return out;
   }
 
-  /// Among sources that edges join the nearest may not have got through: downhill from the one that a node has.
+  /// Goes on from source to source downhill, from the one that a node has: among sources that edges join the nearest
+  /// may not have got through.
   void descend() {
     std::vector<Index32> place(source_.size(), none_.source), row;
     for (std::size_t s = 0; s < sources_.size(); ++s) place[std::size_t(sources_[s])] = Index32(s);

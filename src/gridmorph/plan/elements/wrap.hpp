@@ -41,8 +41,8 @@ struct Wrap {
   double layer = 0;                           ///< smallest
   ChartedDomain domain;                       ///< planes and boxes are in the coordinates of its chart
   std::array<std::vector<double>, 3> planes;  ///< of the lattice, the outer box included, ascending
-  /// Per side, low and high: whether its outermost cells are cells as any other, since the wrap reaches the end of the
-  /// mesh there.
+  /// Whether the outermost cells of each side, low and high, are cells as any other, since the wrap reaches the end of
+  /// the mesh there.
   std::array<std::array<bool, 2>, 3> reaches{};
   std::vector<std::uint8_t> inside;  ///< per cell, i fastest; else never in the outermost cells (of x and y in 2-D)
   std::optional<Tube> tube;          ///< the wrap, instead of cells: then the lattice is one cell, the outer box
@@ -55,7 +55,7 @@ struct Wrap {
   [[nodiscard]] Index3 index(Index cell) const {
     return {int(cell % cells(0)), int(cell / cells(0) % cells(1)), int(cell / (Index(cells(0)) * cells(1)))};
   }
-  /// False for what is no cell.
+  /// Whether a cell is inside the wrap; false for what is no cell.
   [[nodiscard]] bool is_inside(Index3 const& c) const {
     for (int a = 0; a < 3; ++a)
       if (c[std::size_t(a)] < 0 || c[std::size_t(a)] >= cells(a)) return false;
@@ -79,7 +79,7 @@ struct Wrap {
   [[nodiscard]] int interval(int axis, double coordinate) const;
   /// The cell that holds a point of the chart; beyond the outer box one of the outermost. In 2-D z is not looked at.
   [[nodiscard]] Index3 find(Vec3 const& coordinates) const;
-  /// Of chart coordinates.
+  /// Whether chart coordinates are in the wrap.
   [[nodiscard]] bool holds(Vec3 const& coordinates) const {
     return tube ? tube->contains(coordinates) : is_inside(find(coordinates));
   }

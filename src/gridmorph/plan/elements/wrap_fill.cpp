@@ -139,6 +139,7 @@ class Filler {
       while (!stack.empty()) {
         Index3 const c = wrap_.index(stack.back());
         stack.pop_back();
+        // Outermost cells stay free: what reaches them is no hollow.
         if (wrap_.is_outermost(c)) open.back() = 1;
         for (int a = 0; a < wrap_.dimension; ++a)
           for (int const by : {-1, 1}) {

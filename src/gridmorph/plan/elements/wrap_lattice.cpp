@@ -107,7 +107,7 @@ void trim(Mesh const& mesh, Coordinates const& q, std::size_t n_axes, std::span<
   }
 }
 
-/// Joins intervals less than `gap` apart.
+/// Joins intervals that are less than `gap` apart.
 std::vector<Interval> joined(std::vector<Interval> const& intervals, double gap) {
   std::vector<Interval> out;
   for (Interval const& i : intervals)
@@ -121,7 +121,7 @@ std::vector<Interval> joined(std::vector<Interval> const& intervals, double gap)
 /// Lengths of whole and half numbers of cells are common: round-off must not decide.
 int parts(double length, double spacing) { return std::max(1, int(std::lround(length / spacing - 1e-6))); }
 
-/// All planes of one axis.
+/// The coordinates of all planes of one axis.
 std::vector<double> planes_of(std::vector<Interval> intervals, Interval const& domain, double spacing, double margin,
                               std::array<bool, 2> const& ends, std::array<bool, 2>& reaches) {
   // Where walls come close to the limits of the mesh or reach them, the wrap goes a little beyond, so that these limits
