@@ -1,10 +1,9 @@
 // Meshes of case files morphed by thin plate splines (thin_plate.hpp), to be put beside what this project makes of
 // them: what scripts/methods-study runs.
 //
-//   bench_splines morph CASE.toml OUTPUT [CENTRES]   the mesh of the case file, its boundary nodes as centres; of more
-//   than CENTRES
-//                                                    (3000) as many of them, each farthest from those before it. Prints
-//                                                    "centres,seconds"
+//   bench_splines morph CASE.toml OUTPUT [CENTRES]   the mesh of the case file, its boundary nodes as centres; of
+//                                                    more than CENTRES (3000) as many of them, each farthest from
+//                                                    those before it. Prints "centres,seconds"
 //   bench_splines judge BASELINE MESH ...            prints "smallest scaled Jacobian,inverted elements" of each
 //   bench_splines hexahedra BLOCKS OUTPUT            a structured mesh as elements
 //

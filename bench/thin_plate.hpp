@@ -2,8 +2,8 @@
 // node as a centre: the yardstick of docs/unstructured.md for shapes of elements. Not part of the library: it assembles
 // and solves a dense system.
 //
-//   u(x) = sum_c w_c phi(|x - x_c|) + a + B x      phi(r) = r^2 log r      u(x_c) = given, sum_c w_c = 0, sum_c w_c x_c
-//   = 0
+//   u(x) = sum_c w_c phi(|x - x_c|) + a + B x      phi(r) = r^2 log r      u(x_c) = given
+//   sum_c w_c = 0, sum_c w_c x_c = 0
 //
 // (A. de Boer, M.S. van der Schoot, H. Bijl, Comput. Struct. 85 (2007) 784, there the best of their functions for
 // turns.) Linear in what is given: solved once for a few fields.

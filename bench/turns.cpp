@@ -1,8 +1,8 @@
 // How shapes of elements stand turns and shifts: this project, in one step and without its guard, beside thin plate
 // splines with every boundary node as a centre (thin_plate.hpp).
 //
-//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift, wide, plunge; all of them where
-//   none is named
+//   bench_turns [--small] [CASE ...]      cases: airfoil, sphere, pair, gap, shift, wide, plunge; all of them
+//                                         where none is named
 //
 //   airfoil   a C mesh of 24,576 quadrilaterals, outer boundary 29 chords away, turned about the middle of its chord
 //   sphere    prisms and tetrahedra, outer sphere four diameters away, turned about an axis that no grid line follows

@@ -1,9 +1,9 @@
 // The demo passage: one blade-to-blade passage of an axial machine with an O4H mesh, made from analytic geometry.
 //
 //        periodic (upper)
-//   +----------+----------------+----------+      12 pieces in every blade-to-blade section: a ring of four around the
-//   |  inlet   |     upper      |  outlet  |      blade, one H piece on each of its sides, four H pieces in the
-//   corners. |  upper   |                |  upper   |
+//   +----------+----------------+----------+      12 pieces in every blade-to-blade section: a ring of four
+//   |  inlet   |     upper      |  outlet  |      around the blade, one H piece on each of its sides, four H
+//   |  upper   |                |  upper   |      pieces in the corners.
 //   +---------- \  ring_upper  / ----------+      axial ->  i      (ring: i runs round the blade, clockwise,
 //   |  inlet    ring_le    ring_te outlet  |      span     j              k from the wall outwards)
 //   |  middle   /  ring_lower  \   middle  |      pitch up k
@@ -16,15 +16,13 @@
 // With a tip gap (BladeTip) the ring goes on over the tip, and an O of four pieces round a core fills the section of
 // the blade:
 //
-//   ring_upper       +-----------------------+       tip_upper      i: round the blade, as in the ring, or axial in the
-//   core
-//                   /  \      tip_upper    /  \                    k: from the core outwards, or along the pitch in the
-//                   core
-//   ring_le        | tip_le+------------+tip_te |
-//                  |       |  tip_core  |       |     squealer: the core is a pocket; the O is its rim
-//                   \      +------------+      /      groove: tip_le, core and tip_te are one, open to the ring at both
-//                   ends
-//   ring_lower       +-----------------------+
+//   ring_upper       +-----------------------+       tip_upper      i: round the blade, as in the ring, or
+//                   /  \      tip_upper    /  \                       axial in the core
+//   ring_le        | tip_le+------------+tip_te |                   k: from the core outwards, or along the
+//                  |       |  tip_core  |       |                      pitch in the core
+//                   \      +------------+      /      squealer: the core is a pocket; the O is its rim
+//   ring_lower       +-----------------------+        groove: tip_le, core and tip_te are one, open to the
+//                                                     ring at both ends
 //
 // Families: blade, hub, case (BCWallViscous), inlet (BCInflow), outlet (BCOutflow); tip, and squealer
 // or groove for the floor and the walls of what is cut into the tip. The axis of the machine is x, moved

@@ -9,8 +9,10 @@ namespace gridmorph {
 
 /// Connected pieces of moving walls that stay in shape, within 1 % of their size, turn on the way as they shift:
 ///
-///   x(s) = from + s (to - from) + R(s) (x - from + s d),   R(s) the rotation by s times the angle of the rigid motion
-///   that fits the piece's best, d what the displacement is beyond it, turned back
+///   x(s) = from + s (to - from) + R(s) (x - from + s d)
+///
+/// R(s): the rotation by s times the angle of the rigid motion that fits the piece's best; d: what the displacement is
+/// beyond it, turned back.
 ///
 /// All other known nodes go straight.
 class MotionPath {

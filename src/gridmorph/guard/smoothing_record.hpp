@@ -24,8 +24,9 @@ struct FreezeOptions {
 /// smooth_frozen(), morph_in_steps(), or the caller's own. map() is the linear function of u that
 /// fits the guard's shifts s_k best:
 ///
-///   shift(u) = sum over d of (g_d . u) s_d,   the smallest sum over k of |shift(u_k) - s_k|^2, zero for u at right
-///   angles to all u_k
+///   shift(u) = sum over d of (g_d . u) s_d
+///
+/// with the smallest sum over k of |shift(u_k) - s_k|^2, zero for u at right angles to all u_k,
 ///
 /// by the eigenvectors v_d and eigenvalues l_d of the products u_k . u_m (sums over boundary nodes): g_d = sum of
 /// v_d(k) u_k / l_d, s_d = sum of v_d(k) s_k. One displacement comes back to round-off, scaled ones scaled; of a

@@ -10,8 +10,8 @@ namespace gridmorph {
 
 /// dJ/dd_ijk of the control points of an ffd rule, i fastest, with dJ_db from Morpher::transpose():
 ///
-///   dJ/dd_ijk = share * sum over boundary nodes m of B_i(s_m) B_j(t_m) B_k(w_m) dJ/du(m) + what rules beside it make
-///   of it
+///   dJ/dd_ijk = share * sum over boundary nodes m of B_i(s_m) B_j(t_m) B_k(w_m) dJ/du(m)
+///               + what rules beside it make of it
 ///
 /// exactly, as u is linear in d. dJ/du(m) is dJ_db(m) in the frame of the patch's node; summed in the order of
 /// boundary_nodes(). Nodes with another rule that the lattice moves all the same (followers, wakes, what is attached or

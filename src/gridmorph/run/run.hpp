@@ -1,7 +1,7 @@
 // One case file from mesh file to morphed meshes, quality and report, for both kinds of mesh:
 //
-//   read -> rules, plan -> (boundary -> volume -> guard -> quality -> more steps where needed) per moment -> files,
-//   report
+//   read -> rules, plan -> (boundary -> volume -> guard -> quality -> more steps where needed) per moment
+//        -> files, report
 #pragma once
 
 #include <gridmorph/case/field_check.hpp>

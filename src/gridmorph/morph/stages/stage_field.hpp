@@ -10,9 +10,10 @@
 //
 //   transpose(exec, x, field, g)  gradients g of what it writes become those of what it reads
 //   bends()                       whether that depends on the field; a stage without it is linear. Those before one
-//   that bends run forwards first enqueue_kept(exec, x, field)  enqueue, and what its transpose is linearised at is
-//   kept, where enqueue alone does not keep(exec, x, field)          that alone: of the last stage that bends nothing
-//   else is needed
+//                                 that bends run forwards first
+//   enqueue_kept(exec, x, field)  enqueue, and what its transpose is linearised at is kept, where enqueue alone does
+//                                 not keep it
+//   keep(exec, x, field)          that alone: of the last stage that bends nothing else is needed
 //
 // What comes last writes the nodes: write<Move>(exec, x, baseline, fields, out), with Move baseline + u, otherwise u.
 #pragma once

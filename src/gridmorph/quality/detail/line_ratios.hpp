@@ -2,8 +2,8 @@
 // interfaces; internal to the quality part.
 //
 //   growth ratio     edges pq and qr that follow one another along a grid line: max(|pq| / |qr|, |qr| / |pq|)
-//   face area ratio  faces F and G of one grid surface with an edge in common: max(A_F / A_G, A_G / A_F), A = |d1 x d2|
-//   / 2 with the diagonals
+//   face area ratio  faces F and G of one grid surface with an edge in common: max(A_F / A_G, A_G / A_F),
+//                    A = |d1 x d2| / 2 with the diagonals
 //                    d1, d2 of the face, the size of its area vector
 //
 // A cell has the largest ratio of any of its 12 edges, or 6 faces, to those that continue them, 1 where none does.
