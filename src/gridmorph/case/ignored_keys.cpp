@@ -57,6 +57,7 @@ class Ignored {
 
   void of_structured() {
     std::string const why = "is for unstructured meshes, and '" + case_.input.string() + "' is structured";
+    if (!use_.found_blocks) refuse("mesh", "blocks", why + ": it is blocks already");
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
@@ -65,6 +66,7 @@ class Ignored {
   }
 
   void of_wheel() {
+    if (case_.find_blocks) refuse("mesh", "blocks", "is for `gridmorph morph`, and wheels take a mesh as it is");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
     if (use_.unstructured) {
       std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";

@@ -13,6 +13,7 @@ struct CaseUse {
   bool unstructured = false;
   Run run = Run::morph;
   Format format = Format::cgns;
+  bool found_blocks = false;  ///< not `unstructured`, since blocks are looked for among the elements of the file
 };
 
 /// Throws one ConfigError that lists every key of the case file without an effect on such a run, each as

@@ -21,8 +21,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph",     "inspect", "plan", "quality", "wheel", "fillet",
-                                             "hexahedra", "surface", "view", "keys",    "demo"};
+std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "quality", "wheel", "fillet",
+                                             "blocks", "hexahedra", "surface", "view",    "keys",  "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -147,6 +147,14 @@ CLI::App* add_surface(CLI::App& app, CommandLine& out) {
   add_leave_out(*surface, out);
   surface->add_flag("--ascii", out.ascii, "Text with all digits; binary STL has single precision");
   return surface;
+}
+
+CLI::App* add_blocks(CLI::App& app, CommandLine& out) {
+  auto* blocks = app.add_subcommand("blocks", "Find the blocks of grid lines in a mesh of hexahedra, and write them");
+  blocks->add_option("mesh", out.input, "Mesh of hexahedra (CGNS, SU2, OpenFOAM, Gmsh, VTK or UGRID)")->required();
+  blocks->add_option("-o,--output", out.output, "NAME.cgns")->required();
+  add_leave_out(*blocks, out);
+  return blocks;
 }
 
 CLI::App* add_hexahedra(CLI::App& app, CommandLine& out) {
@@ -328,6 +336,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(quality, Command::quality);
   commands.emplace_back(add_wheel(app, out), Command::wheel);
   commands.emplace_back(add_fillet(app, out), Command::fillet);
+  commands.emplace_back(add_blocks(app, out), Command::blocks);
   commands.emplace_back(add_hexahedra(app, out), Command::hexahedra);
   commands.emplace_back(add_surface(app, out), Command::surface);
   commands.emplace_back(add_view(app, out), Command::view);

@@ -14,7 +14,7 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, keys, demo };
+  enum class Command { morph, inspect, plan, quality, wheel, fillet, blocks, hexahedra, surface, view, keys, demo };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says

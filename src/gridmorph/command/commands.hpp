@@ -18,6 +18,7 @@ int run_quality_command(CommandLine const& options, Terminal& terminal);
 int run_wheel_command(CommandLine const& options, Terminal& terminal);
 int run_surface_command(CommandLine const& options, Terminal& terminal);
 int run_fillet_command(CommandLine const& options, Terminal& terminal);
+int run_blocks_command(CommandLine const& options, Terminal& terminal);
 int run_hexahedra_command(CommandLine const& options, Terminal& terminal);
 int run_view_command(CommandLine const& options, Terminal& terminal);
 int run_keys_command(CommandLine const& options, Terminal& terminal);

@@ -39,6 +39,7 @@ constexpr std::array topics{
     Topic{"wheel", "  gridmorph wheel case.toml --output wheel.cgns\n", "wheel.md, case_file.md#wheel"},
     Topic{"fillet", "  gridmorph fillet passage.cgns --blade blade --wall hub --radius 0.004 --output filled.cgns\n",
           "root_fillet.md"},
+    Topic{"blocks", "  gridmorph blocks cavity.msh --output blocks.cgns\n", "unstructured.md#blocks-in-hexahedra"},
     Topic{"hexahedra", "  gridmorph hexahedra passage.cgns --output elements.cgns\n",
           "unstructured.md#the-same-mesh-both-ways, formats.md"},
     Topic{"surface", "  gridmorph surface wing.cgns --patches type:wall --output wing.stl\n",

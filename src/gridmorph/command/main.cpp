@@ -1,4 +1,4 @@
-// gridmorph: morph, inspect, plan, quality, wheel, fillet, hexahedra, surface, view, keys, demo.
+// gridmorph: morph, inspect, plan, quality, wheel, fillet, blocks, hexahedra, surface, view, keys, demo.
 //
 //   gridmorph inspect passage.cgns
 //   gridmorph plan case.toml
@@ -44,6 +44,7 @@ int run(CommandLine const& options, Terminal& terminal) {
     case Command::quality: return run_quality_command(options, terminal);
     case Command::wheel: return run_wheel_command(options, terminal);
     case Command::fillet: return run_fillet_command(options, terminal);
+    case Command::blocks: return run_blocks_command(options, terminal);
     case Command::hexahedra: return run_hexahedra_command(options, terminal);
     case Command::surface: return run_surface_command(options, terminal);
     case Command::view: return run_view_command(options, terminal);

@@ -42,6 +42,7 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
     case Command::inspect:
     case Command::quality:
     case Command::fillet:
+    case Command::blocks:
     case Command::hexahedra:
     case Command::surface:
     case Command::view:

@@ -222,8 +222,14 @@ KindTraits const& traits_of(MeshKind kind) {
 }
 
 LoadedMesh::LoadedMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
-                       std::vector<std::string> const& leave_out)
-    : LoadedMesh(load_mesh(path, side_file, leave_out)) {}
+                       std::vector<std::string> const& leave_out, bool find_blocks)
+    : LoadedMesh(find_blocks
+                     ? LoadedMesh(std::make_shared<ElementsAsBlocks>(in_order(load_mesh(path, side_file, leave_out))))
+                     : LoadedMesh(load_mesh(path, side_file, leave_out))) {}
+
+LoadedMesh::LoadedMesh(std::shared_ptr<ElementsAsBlocks> as_elements) : LoadedMesh(as_elements->take_blocks()) {
+  as_elements_ = std::move(as_elements);
+}
 
 LoadedMesh::LoadedMesh(Mesh as_read)
     : indexed_(in_order(std::move(as_read))),

@@ -10,6 +10,7 @@
 #include <gridmorph/page/picture_mesh.hpp>
 #include <gridmorph/quality/indexed_mesh.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/run/elements_as_blocks.hpp>
 #include <gridmorph/run/inspect_text.hpp>
 
 #include <nlohmann/json.hpp>
@@ -73,9 +74,10 @@ KindTraits const& traits_of(MeshKind kind);
 /// A mesh, elements in order by position where their file scatters them, with what follows from it.
 class LoadedMesh {
  public:
-  /// As load_mesh() of side_file.hpp.
+  /// As load_mesh() of side_file.hpp. find_blocks: hexahedra are taken as the blocks found among them. Throws MeshError
+  /// where some lie in no block.
   LoadedMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
-             std::vector<std::string> const& leave_out);
+             std::vector<std::string> const& leave_out, bool find_blocks = false);
   /// Of a mesh as it was read.
   explicit LoadedMesh(Mesh as_read);
 
@@ -119,21 +121,33 @@ class LoadedMesh {
   /// The file `input`, which this was read from, with other coordinates: write_morphed(), SeriesWriter.
   void write(std::filesystem::path const& input, std::filesystem::path const& output, Coordinates const& morphed,
              OutputFields const& fields) const {
-    write_morphed(input.string(), output.string(), mesh(), morphed, fields);
+    write_morphed(input.string(), output.string(), in_file(), in_file(morphed), in_file(fields));
   }
   /// For viewers: write_vtk().
   void write_vtk(std::filesystem::path const& output, Coordinates const& morphed, OutputFields const& fields) const {
-    gridmorph::write_vtk(output.string(), mesh(), morphed, fields);
+    gridmorph::write_vtk(output.string(), in_file(), in_file(morphed), in_file(fields));
   }
   [[nodiscard]] SeriesWriter series(std::filesystem::path const& input, std::filesystem::path const& output,
                                     std::vector<double> const& times) const {
-    return {input.string(), output.string(), mesh(), times};
+    return {input.string(), output.string(), in_file(), times};
+  }
+  /// The coordinates that a file gets: those of the elements where the mesh is blocks found among them.
+  [[nodiscard]] Coordinates in_file(Coordinates const& morphed) const {
+    return as_elements_ ? as_elements_->coordinates(morphed) : morphed;
   }
 
   /// As pictures see it; the mesh must outlive it.
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const;
 
  private:
+  explicit LoadedMesh(std::shared_ptr<ElementsAsBlocks> as_elements);
+  /// The mesh as its file has it.
+  [[nodiscard]] Mesh const& in_file() const { return as_elements_ ? as_elements_->elements() : mesh(); }
+  [[nodiscard]] OutputFields in_file(OutputFields const& fields) const {
+    return as_elements_ ? as_elements_->fields(fields) : fields;
+  }
+
+  std::shared_ptr<ElementsAsBlocks const> as_elements_;  ///< where the mesh is blocks found among elements
   IndexedMesh indexed_;
   std::vector<std::string> problems_;
   /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of

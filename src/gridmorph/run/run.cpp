@@ -48,7 +48,9 @@ void refuse_missing_files(CaseFile const& case_file) {
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run) {
   refuse_missing_files(case_file);
   MeshSource file = look_at(case_file.input, case_file.leave_out);
-  refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format});
+  bool const finds = case_file.find_blocks && file.kind == MeshKind::unstructured && run != CaseUse::Run::wheel;
+  if (finds) file.kind = MeshKind::structured;  // what is morphed is blocks
+  refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format, finds});
   return file;
 }
 
@@ -77,7 +79,7 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Console& console)
     : case_file_(case_file), console_(console) {
   Stopwatch watch;
   console.progress("reading " + case_file.input.string());
-  mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out);
+  mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out, case_file.find_blocks);
   times.push_back({"read", watch.lap(), true});
   console.progress(mesh_->kind().planning);
   check_fields(case_file, mesh_->mesh());

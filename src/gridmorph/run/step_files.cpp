@@ -47,7 +47,7 @@ StepFiles::~StepFiles() {
 
 void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
   if (series_) {
-    series_->add(morphed);
+    series_->add(mesh_.in_file(morphed));
     return;
   }
   // What takes several files is written where it belongs.

@@ -1,0 +1,84 @@
+// How hexahedra are joined to one another: for every side the cell behind it, and which corner is which.
+#pragma once
+
+#include <gridmorph/mesh/unstructured_topology.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace gridmorph::detail {
+
+/// A hexahedron as a box of local indices: corner c (SIDS order) lies at bit 0, 1, 2 of corner_place[c] along its local
+/// axes 0, 1, 2. The table is its own inverse.
+inline constexpr std::array<int, 8> corner_place{0, 1, 3, 2, 4, 5, 7, 6};
+/// The local axis that a side (SIDS order) lies across, and at which end of it.
+inline constexpr std::array<int, 6> side_axis{2, 1, 0, 1, 0, 2}, side_end{0, 0, 1, 1, 0, 1};
+/// The side at an end of an axis.
+inline constexpr std::array<std::array<int, 2>, 3> side_at{{{4, 2}, {1, 3}, {0, 5}}};
+
+/// The corners of a side in the order of face_corner().
+inline std::array<int, 4> corners_of_side(int side) {
+  std::array<int, 4> out{};
+  for (int k = 0; k < 4; ++k) out[std::size_t(k)] = face_corner(ElementType::hexahedron, side, k);
+  return out;
+}
+
+/// Side `side` of cell `cell`, as one number; -1: none.
+using CellSide = Index32;
+inline CellSide cell_side(Index32 cell, int side) { return 6 * cell + side; }
+
+/// Across a side: whose side lies behind it, and how corners and local axes go on.
+struct SideLink {
+  Index32 cell = -1;
+  int side = -1;
+  Orientation axes;             ///< of this cell's -> of that one's
+  std::array<int, 8> corner{};  ///< of the side's corners: theirs in that cell
+};
+
+/// The links of all sides. Cells that are no hexahedra, and sides of them, have none.
+class HexLinks {
+ public:
+  /// Nodes that connections join, periodic ones left out, count as one.
+  HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology);
+
+  [[nodiscard]] bool is_hexahedron(Index32 cell) const {
+    return mesh_.elements.type[std::size_t(cell)] == ElementType::hexahedron;
+  }
+  /// The node that stands for corner c and those that are one with it.
+  [[nodiscard]] Index32 node(Index32 cell, int corner) const {
+    return representative_[std::size_t(mesh_.elements.nodes[cell][std::size_t(corner)])];
+  }
+  /// What lies behind a side inside the mesh; -1: nothing.
+  [[nodiscard]] CellSide behind(CellSide s) const { return partner_[std::size_t(s)]; }
+  /// The link of a side that has something behind it.
+  [[nodiscard]] SideLink link(CellSide s) const { return made(s, partner_[std::size_t(s)], turn_[std::size_t(s)]); }
+  /// The number of a side among the boundary faces; -1 where it is none.
+  [[nodiscard]] Index32 boundary_face(CellSide s) const { return face_[std::size_t(s)]; }
+  /// Across a periodic connection; nothing where a side lies on none.
+  [[nodiscard]] std::optional<SideLink> periodic(CellSide s) const;
+  /// The connection of a boundary face: 2 c, or 2 c + 1 from the donor's side.
+  [[nodiscard]] Index32 connection(CellSide s) const {
+    return topology_.boundary.connection[std::size_t(boundary_face(s))];
+  }
+
+ private:
+  static SideLink made(CellSide from, CellSide to, int turn);
+  /// The way in which the corners of one side are those of another, by `same(node of this, node of that)`; -1: they are
+  /// not.
+  template <class Same>
+  [[nodiscard]] int turn_between(CellSide from, CellSide to, Same const& same) const;
+  [[nodiscard]] CellSide find_partner(CellSide s) const;
+
+  Mesh const& mesh_;
+  UnstructuredTopology const& topology_;
+  std::vector<Index32> representative_;
+  std::vector<Index32> face_;      ///< (6 cells)
+  std::vector<CellSide> partner_;  ///< (6 cells)
+  std::vector<std::int8_t> turn_;  ///< (6 cells) of turn_between()
+  /// Per connection, its nodes as pairs of representatives, ascending: from its side, and from the donor's.
+  std::vector<std::vector<std::pair<Index32, Index32>>> pairs_;
+};
+
+}  // namespace gridmorph::detail

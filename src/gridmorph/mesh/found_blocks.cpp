@@ -1,0 +1,296 @@
+#include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/mesh/detail/block_sides.hpp>
+#include <gridmorph/mesh/detail/hex_links.hpp>
+#include <gridmorph/mesh/found_blocks.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+using detail::CellSide, detail::cell_side, detail::corner_place, detail::HexLinks, detail::side_at, detail::side_axis,
+    detail::side_end, detail::SideLink;
+
+/// An edge of a cell by its two sides there.
+struct CellEdge {
+  int side, other;
+};
+
+/// Edge 4 a + b of a cell runs along axis a.
+constexpr std::array<CellEdge, 12> make_edges() {
+  std::array<CellEdge, 12> out{};
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 4; ++b) {
+      int const first = a == 0 ? 1 : 0, second = a == 2 ? 1 : 2;
+      out[std::size_t(4 * a + b)] = {side_at[std::size_t(first)][std::size_t(b & 1)],
+                                     side_at[std::size_t(second)][std::size_t(b >> 1)]};
+    }
+  return out;
+}
+constexpr std::array<CellEdge, 12> edges = make_edges();
+
+/// A cell and two of its sides that have an edge in common: a place on the way around that edge.
+struct Around {
+  Index32 cell;
+  int through, other;  ///< the side that is left through next, and the one that was come in by, or begun at
+};
+
+/// The cell behind `at.through`, which is left by its other side at the same edge. Only where something lies there.
+Around next(HexLinks const& links, Around const& at) {
+  SideLink const link = links.link(cell_side(at.cell, at.through));
+  // The side that was begun at lies at an end of an axis of this cell; there it goes on along the same axis.
+  int const axis = side_axis[std::size_t(at.other)], there = link.axes.axis[std::size_t(axis)];
+  bool const flipped = link.axes.sign[std::size_t(axis)] < 0;
+  int const end = flipped ? 1 - side_end[std::size_t(at.other)] : side_end[std::size_t(at.other)];
+  return {link.cell, side_at[std::size_t(there)][std::size_t(end)], link.side};
+}
+
+/// Whether grid lines go on through an edge: four cells around it, or on the boundary one or two.
+bool is_regular(HexLinks const& links, Index32 cell, CellEdge const& edge) {
+  constexpr int most = 5;
+  int count = 1;
+  Around at{cell, edge.side, edge.other};
+  for (; count <= most; ++count) {
+    if (links.behind(cell_side(at.cell, at.through)) < 0) break;
+    at = next(links, at);
+    if (at.cell == cell && ((at.through == edge.side && at.other == edge.other))) return count == 4;
+  }
+  if (count > most) return false;
+  at = {cell, edge.other, edge.side};
+  for (; count <= most; ++count) {
+    if (links.behind(cell_side(at.cell, at.through)) < 0) return count <= 2;
+    at = next(links, at);
+  }
+  return false;
+}
+
+/// Faces joined across regular edges, and which of them are limits of blocks.
+class Sheets {
+ public:
+  Sheets(HostInstance const& host, HexLinks const& links, Index n_cells)
+      : links_(links), irregular_(std::size_t(n_cells), 0), sets_(std::size_t(6 * n_cells)) {
+    detail::for_all(host, "gridmorph::regular_edges", n_cells, [&](Index e) {
+      if (!links.is_hexahedron(Index32(e))) return;
+      for (std::size_t k = 0; k < 12; ++k)
+        if (!is_regular(links, Index32(e), edges[k])) irregular_[std::size_t(e)] |= std::uint16_t(1u << k);
+    });
+    for (Index32 e = 0; e < n_cells; ++e)
+      if (links.is_hexahedron(e)) join(e);
+    limit_.assign(std::size_t(6 * n_cells), 0);
+    for (Index32 e = 0; e < n_cells; ++e)
+      for (std::size_t k = 0; k < 12; ++k)
+        if ((irregular_[std::size_t(e)] & (1u << k)) != 0)
+          for (int const side : {edges[k].side, edges[k].other})
+            if (links.behind(cell_side(e, side)) >= 0) make_limit(cell_side(e, side));
+  }
+
+  /// Blocks end at the whole sheet of a side.
+  void make_limit(CellSide s) { limit_[std::size_t(sets_.root(face(s)))] = 1; }
+  [[nodiscard]] bool is_limit(CellSide s) { return limit_[std::size_t(sets_.root(face(s)))] != 0; }
+
+ private:
+  /// One number for both sides of a face.
+  [[nodiscard]] CellSide face(CellSide s) const {
+    CellSide const other = links_.behind(s);
+    return other < 0 ? s : std::min(s, other);
+  }
+  /// At each regular edge inside, a side with the one that goes on behind the other side.
+  void join(Index32 e) {
+    for (std::size_t k = 0; k < 12; ++k) {
+      if ((irregular_[std::size_t(e)] & (1u << k)) != 0) continue;
+      for (auto const& [side, through] :
+           {std::pair(edges[k].side, edges[k].other), std::pair(edges[k].other, edges[k].side)}) {
+        CellSide const own = cell_side(e, side);
+        if (links_.behind(own) < 0 || links_.behind(cell_side(e, through)) < 0) continue;
+        Around const on = next(links_, {e, through, side});
+        CellSide const opposite = cell_side(on.cell, on.through);
+        if (links_.behind(opposite) >= 0) sets_.join(face(own), face(opposite));
+      }
+    }
+  }
+
+  HexLinks const& links_;
+  std::vector<std::uint16_t> irregular_;  ///< a bit per edge
+  DisjointSets<Index32> sets_;            ///< of face()
+  std::vector<std::uint8_t> limit_;       ///< per root
+};
+
+/// Where a cell lies in its block.
+struct Placed {
+  Index3 at{0, 0, 0};
+  Orientation axes;  ///< of the cell's local axes -> of the block's
+};
+
+/// The blocks of a mesh, cell by cell.
+class Search {
+ public:
+  Search(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology)
+      : mesh_(mesh),
+        links_(host, mesh, topology),
+        sheets_(host, links_, mesh.n_elements()),
+        placed_(std::size_t(mesh.n_elements())),
+        block_(std::size_t(mesh.n_elements()), none) {}
+
+  FoundBlocks run(BoundaryFacePatches const& face_patches) {
+    FoundBlocks out;
+    for (Index32 e = 0; e < mesh_.n_elements(); ++e) {
+      if (block_[std::size_t(e)] != none) continue;
+      if (!links_.is_hexahedron(e)) {
+        leave(out, {e}, "is no hexahedron");
+        continue;
+      }
+      while (block_[std::size_t(e)] == none) find_block(out, e);
+    }
+    if (out.n_left == 0) detail::add_block_sides(mesh_, links_, face_patches, corners(out), out.mesh);
+    finish(out);
+    return out;
+  }
+
+ private:
+  static constexpr int none = -1, left = -2;
+
+  /// The block around a cell; where it closes on itself it is cut, and found in the next call.
+  void find_block(FoundBlocks& out, Index32 first) {
+    std::vector<Index32> cells{first};
+    placed_[std::size_t(first)] = {};
+    block_[std::size_t(first)] = int(out.mesh.zones.size());
+    std::optional<CellSide> conflict;
+    for (std::size_t n = 0; n < cells.size() && !conflict; ++n) conflict = visit_neighbours(cells, cells[n]);
+    if (conflict) {
+      for (Index32 const e : cells) block_[std::size_t(e)] = none;
+      if (!sheets_.is_limit(*conflict)) return sheets_.make_limit(*conflict);
+      return leave(out, cells, "lies among others whose indices contradict one another");
+    }
+    if (std::string const why = add_block(out, cells); !why.empty()) leave(out, cells, why);
+  }
+
+  /// Places what lies behind the sides of a cell. Returns the side behind which a cell has another place already.
+  std::optional<CellSide> visit_neighbours(std::vector<Index32>& cells, Index32 e) {
+    Placed const own = placed_[std::size_t(e)];
+    int const block = block_[std::size_t(e)];
+    for (int side = 0; side < 6; ++side) {
+      CellSide const s = cell_side(e, side);
+      if (links_.behind(s) < 0 || sheets_.is_limit(s)) continue;
+      SideLink const link = links_.link(s);
+      int const axis = side_axis[std::size_t(side)];
+      Placed there{own.at, link.axes.inverse().then(own.axes)};
+      int const outwards = side_end[std::size_t(side)] == 1 ? 1 : -1;
+      there.at[std::size_t(own.axes.axis[std::size_t(axis)])] += outwards * own.axes.sign[std::size_t(axis)];
+      if (block_[std::size_t(link.cell)] == none) {
+        block_[std::size_t(link.cell)] = block;
+        placed_[std::size_t(link.cell)] = there;
+        cells.push_back(link.cell);
+        continue;
+      }
+      Placed const& known = placed_[std::size_t(link.cell)];
+      if (block_[std::size_t(link.cell)] != block || known.at != there.at || !(known.axes == there.axes)) return s;
+    }
+    return {};
+  }
+
+  /// Why the cells are no block; empty: they are one now.
+  std::string add_block(FoundBlocks& out, std::vector<Index32> const& cells) {
+    Index3 low = placed_[std::size_t(cells.front())].at, high = low;
+    for (Index32 const e : cells)
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], placed_[std::size_t(e)].at[a]);
+        high[a] = std::max(high[a], placed_[std::size_t(e)].at[a]);
+      }
+    Index3 const extent{high[0] - low[0] + 2, high[1] - low[1] + 2, high[2] - low[2] + 2};
+    if (Index(extent[0] - 1) * (extent[1] - 1) * (extent[2] - 1) != Index(cells.size()))
+      return "lies among others that fill no box of indices";
+    for (Index32 const e : cells)
+      for (std::size_t a = 0; a < 3; ++a) placed_[std::size_t(e)].at[a] -= low[a];
+    Mesh& mesh = out.mesh;
+    auto const z = std::size_t(mesh.add_zone("block " + std::to_string(mesh.zones.size() + 1), extent));
+    Zone const& zone = mesh.zones[z];
+    auto const first_node = out.node.size(), first_cell = out.element.size();
+    out.node.resize(first_node + std::size_t(zone.size()), -1);
+    out.element.resize(first_cell + cells.size(), -1);
+    bool one = true;
+    for (Index32 const e : cells) {
+      Index3 const& p = placed_[std::size_t(e)].at;
+      out.element[first_cell + std::size_t(p[0] + Index(extent[0] - 1) * (p[1] + Index(extent[1] - 1) * p[2]))] = e;
+      for (int c = 0; c < 8; ++c) {
+        Index32& node = out.node[std::size_t(zone.node(place_of(e, c)))];
+        Index32 const own = links_.node(e, c);
+        one = one && (node < 0 || node == own);
+        node = own;
+      }
+    }
+    if (one) return {};
+    out.node.resize(first_node);
+    out.element.resize(first_cell);
+    mesh.zones.pop_back();
+    return "lies among others that are torn along a surface inside of them";
+  }
+
+  /// The indices of a corner in the block of its cell.
+  [[nodiscard]] Index3 place_of(Index32 e, int corner) const {
+    Placed const& placed = placed_[std::size_t(e)];
+    Index3 out = placed.at;
+    for (std::size_t a = 0; a < 3; ++a) {
+      int const up = (corner_place[std::size_t(corner)] >> a) & 1;
+      out[std::size_t(placed.axes.axis[a])] += placed.axes.sign[a] > 0 ? up : 1 - up;
+    }
+    return out;
+  }
+
+  void leave(FoundBlocks& out, std::vector<Index32> const& cells, std::string const& why) {
+    for (Index32 const e : cells) block_[std::size_t(e)] = left;
+    if (out.n_left == 0) {
+      Index32 const first = *std::min_element(cells.begin(), cells.end());
+      out.why_left = describe_element(mesh_, first) + " " + why;
+    }
+    out.n_left += Index(cells.size());
+  }
+
+  /// Of all cells, where they are.
+  [[nodiscard]] detail::CellPlaces corners(FoundBlocks const&) const {
+    return {[this](Index32 e) { return block_[std::size_t(e)]; },
+            [this](Index32 e) -> Orientation const& { return placed_[std::size_t(e)].axes; },
+            [this](Index32 e) -> Index3 const& { return placed_[std::size_t(e)].at; },
+            [this](Index32 e, int c) { return place_of(e, c); }};
+  }
+
+  void finish(FoundBlocks& out) const {
+    Mesh& mesh = out.mesh;
+    mesh.dimension = mesh_.dimension;
+    mesh.source = mesh_.source;
+    mesh.families = mesh_.families;
+    mesh.notes = mesh_.notes;
+    mesh.coordinates = Coordinates(mesh.n_nodes());
+    for (std::size_t n = 0; n < out.node.size(); ++n) mesh.coordinates.set(Index(n), mesh_.coordinates[out.node[n]]);
+    bool const single =
+        std::all_of(mesh_.zones.begin(), mesh_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
+    for (Zone& zone : mesh.zones) zone.single_precision = single;
+  }
+
+  Mesh const& mesh_;
+  HexLinks links_;
+  Sheets sheets_;
+  std::vector<Placed> placed_;
+  std::vector<int> block_;
+};
+
+}  // namespace
+
+FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
+                        BoundaryFacePatches const& face_patches) {
+  if (mesh.dimension != 3) {
+    FoundBlocks out;
+    out.n_left = mesh.n_elements();
+    out.why_left = mesh.source + ": is a mesh in the plane";
+    return out;
+  }
+  return Search(host, mesh, topology).run(face_patches);
+}
+
+}  // namespace gridmorph
