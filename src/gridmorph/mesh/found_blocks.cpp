@@ -46,8 +46,8 @@ struct Around {
 Around next(HexLinks const& links, Around const& at) {
   SideLink const link = links.link(cell_side(at.cell, at.through));
   // The side that was begun at lies at an end of an axis of this cell; there it goes on along the same axis.
-  int const axis = side_axis[std::size_t(at.other)], there = link.axes.axis[std::size_t(axis)];
-  bool const flipped = link.axes.sign[std::size_t(axis)] < 0;
+  int const axis = side_axis[std::size_t(at.other)], there = link.turn->axes.axis[std::size_t(axis)];
+  bool const flipped = link.turn->axes.sign[std::size_t(axis)] < 0;
   int const end = flipped ? 1 - side_end[std::size_t(at.other)] : side_end[std::size_t(at.other)];
   return {link.cell, side_at[std::size_t(there)][std::size_t(end)], link.side};
 }
@@ -180,7 +180,7 @@ class Search {
       if (links_.behind(s) < 0 || sheets_.is_limit(s)) continue;
       SideLink const link = links_.link(s);
       int const axis = side_axis[std::size_t(side)];
-      Placed there{own.at, link.axes.inverse().then(own.axes)};
+      Placed there{own.at, link.turn->axes.inverse().then(own.axes)};
       int const outwards = side_end[std::size_t(side)] == 1 ? 1 : -1;
       there.at[std::size_t(own.axes.axis[std::size_t(axis)])] += outwards * own.axes.sign[std::size_t(axis)];
       if (block_[std::size_t(link.cell)] == none) {

@@ -100,9 +100,10 @@ class Sides {
   [[nodiscard]] Behind across(Index32 e, int s, SideLink const& link) const {
     Behind out;
     out.block = places_.block(link.cell);
-    out.to_donor.orientation = places_.axes(e).inverse().then(link.axes).then(places_.axes(link.cell));
+    out.to_donor.orientation = places_.axes(e).inverse().then(link.turn->axes).then(places_.axes(link.cell));
     int const corner = corners_of_side(s)[0];
-    Index3 const here = places_.node(e, corner), there = places_.node(link.cell, link.corner[std::size_t(corner)]),
+    Index3 const here = places_.node(e, corner),
+                 there = places_.node(link.cell, link.turn->corner[std::size_t(corner)]),
                  step = out.to_donor.orientation.apply(here);
     for (std::size_t a = 0; a < 3; ++a) out.to_donor.donor_origin[a] = there[a] - step[a];
     return out;

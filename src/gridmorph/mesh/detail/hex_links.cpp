@@ -6,6 +6,45 @@
 
 namespace gridmorph::detail {
 
+namespace {
+
+SideTurn turned(int from, int to, int turn) {
+  SideTurn out;
+  int const start = turn / 2;
+  bool const reversed = turn % 2 != 0;
+  auto const own = corners_of_side(from), other = corners_of_side(to);
+  for (int k = 0; k < 4; ++k)
+    out.corner[std::size_t(own[std::size_t(k)])] =
+        std::int8_t(other[std::size_t(reversed ? (start + 4 - k) % 4 : (start + k) % 4)]);
+  // Out of this cell is into that one.
+  int const axis = side_axis[std::size_t(from)];
+  out.axes.axis[std::size_t(axis)] = side_axis[std::size_t(to)];
+  out.axes.sign[std::size_t(axis)] = side_end[std::size_t(from)] != side_end[std::size_t(to)] ? 1 : -1;
+  int const first = own[0];
+  for (int a = 0; a < 3; ++a) {
+    if (a == axis) continue;
+    int const place = corner_place[std::size_t(first)], next = corner_place[std::size_t(place ^ (1 << a))];
+    int const there = corner_place[std::size_t(out.corner[std::size_t(first)])],
+              on = corner_place[std::size_t(out.corner[std::size_t(next)])];
+    int const along = there ^ on;
+    int const b = along == 1 ? 0 : along == 2 ? 1 : 2;
+    out.axes.axis[std::size_t(a)] = b;
+    bool const up_here = (place & (1 << a)) == 0, up_there = (there & (1 << b)) == 0;
+    out.axes.sign[std::size_t(a)] = up_here == up_there ? 1 : -1;
+  }
+  return out;
+}
+
+std::array<SideTurn, 288> all_turns() {
+  std::array<SideTurn, 288> out;
+  for (int n = 0; n < 288; ++n) out[std::size_t(n)] = turned(n / 48, n / 8 % 6, n % 8);
+  return out;
+}
+
+}  // namespace
+
+std::array<SideTurn, 288> const side_turns = all_turns();
+
 HexLinks::HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology)
     : mesh_(mesh), topology_(topology), representative_(coincident_nodes(mesh)) {
   auto const n_sides = std::size_t(6 * mesh.n_elements());
@@ -74,34 +113,6 @@ int HexLinks::turn_between(CellSide from, CellSide to, Same const& same) const {
       if (all) return 2 * start + reversed;
     }
   return -1;
-}
-
-SideLink HexLinks::made(CellSide from, CellSide to, int turn) {
-  SideLink out;
-  out.cell = to / 6;
-  out.side = to % 6;
-  int const side = from % 6, start = turn / 2;
-  bool const reversed = turn % 2 != 0;
-  auto const own = corners_of_side(side), other = corners_of_side(out.side);
-  for (int k = 0; k < 4; ++k)
-    out.corner[std::size_t(own[std::size_t(k)])] = other[std::size_t(reversed ? (start + 4 - k) % 4 : (start + k) % 4)];
-  // Out of this cell is into that one.
-  int const axis = side_axis[std::size_t(side)];
-  out.axes.axis[std::size_t(axis)] = side_axis[std::size_t(out.side)];
-  out.axes.sign[std::size_t(axis)] = side_end[std::size_t(side)] != side_end[std::size_t(out.side)] ? 1 : -1;
-  int const first = own[0];
-  for (int a = 0; a < 3; ++a) {
-    if (a == axis) continue;
-    int const place = corner_place[std::size_t(first)], next = corner_place[std::size_t(place ^ (1 << a))];
-    int const there = corner_place[std::size_t(out.corner[std::size_t(first)])],
-              on = corner_place[std::size_t(out.corner[std::size_t(next)])];
-    int const along = there ^ on;
-    int const b = along == 1 ? 0 : along == 2 ? 1 : 2;
-    out.axes.axis[std::size_t(a)] = b;
-    bool const up_here = (place & (1 << a)) == 0, up_there = (there & (1 << b)) == 0;
-    out.axes.sign[std::size_t(a)] = up_here == up_there ? 1 : -1;
-  }
-  return out;
 }
 
 std::optional<SideLink> HexLinks::periodic(CellSide s) const {

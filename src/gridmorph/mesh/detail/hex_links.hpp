@@ -29,12 +29,20 @@ inline std::array<int, 4> corners_of_side(int side) {
 using CellSide = Index32;
 inline CellSide cell_side(Index32 cell, int side) { return 6 * cell + side; }
 
-/// Across a side: whose side lies behind it, and how corners and local axes go on.
+/// How corners and local axes of one cell go on in another, across a side that both have.
+struct SideTurn {
+  Orientation axes;                     ///< of this cell's -> of that one's
+  std::array<std::int8_t, 8> corner{};  ///< of the side's corners: theirs in that cell
+};
+
+/// Of every side with every other in all eight ways: 48 * side + 8 * other side + turn.
+extern std::array<SideTurn, 288> const side_turns;
+
+/// What lies across a side.
 struct SideLink {
   Index32 cell = -1;
   int side = -1;
-  Orientation axes;             ///< of this cell's -> of that one's
-  std::array<int, 8> corner{};  ///< of the side's corners: theirs in that cell
+  SideTurn const* turn = nullptr;
 };
 
 /// The links of all sides. Cells that are no hexahedra, and sides of them, have none.
@@ -64,7 +72,9 @@ class HexLinks {
   }
 
  private:
-  static SideLink made(CellSide from, CellSide to, int turn);
+  static SideLink made(CellSide from, CellSide to, int turn) {
+    return {to / 6, to % 6, &side_turns[std::size_t(48 * (from % 6) + 8 * (to % 6) + turn)]};
+  }
   /// The way in which the corners of one side are those of another, by `same(node of this, node of that)`; -1: they are
   /// not.
   template <class Same>
