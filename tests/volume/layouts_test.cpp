@@ -243,5 +243,29 @@ TEST_F(Layouts, ExtentsThatDoNotFitAreRefusedWithBothNumbers) {
           {std::to_string(mesh.zones.size()) + " zones", std::to_string(mesh.zones.size() - 1)});
 }
 
+// Plans read coordinates on the host: from whatever layout a solver has them in, the same ones come.
+TEST_F(Layouts, ComeToTheHostForPlans) {
+  Exec const exec;
+  Mesh const mesh = annulus_sector({}, 1);
+  auto const expect_same = [&](In const& x, double tolerance) {
+    Coordinates const host = host_coordinates(exec, x);
+    ASSERT_EQ(host.size(), mesh.n_nodes());
+    for (Index n = 0; n < host.size(); ++n) ASSERT_LE(distance(host[n], mesh.coordinates[n]), tolerance) << n;
+  };
+  expect_same(mesh.coordinates, 0);
+  Kokkos::View<double* [3], Kokkos::LayoutRight, Memory> const rows("test::rows", mesh.n_nodes());
+  put(rows, mesh.coordinates);
+  expect_same(rows, 0);
+  Kokkos::View<float**, Kokkos::LayoutLeft, Memory> const single("test::single", mesh.n_nodes(), 3);
+  put(single, mesh.coordinates);
+  expect_same(single, 1e-6 * mesh.size());
+  GhostedZones<double, Kokkos::LayoutRight> const zones(mesh, 2, [&](Index n) { return mesh.coordinates[n]; });
+  expect_same(In(exec, mesh, zones.inner), 0);
+}
+
+// Other spaces are refused when they are compiled, in a sentence.
+struct OtherSpace {};
+static_assert(BuiltFor<Exec> && !BuiltFor<OtherSpace>);
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -4,6 +4,7 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/morph/best_order.hpp>
+#include <gridmorph/morph/detail/baseline.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/plan_access.hpp>
@@ -321,7 +322,25 @@ Coordinates moved_by(Exec const& exec, MorphPlan const& plan, Coordinates const&
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
+Coordinates host_coordinates(Exec const& exec, ConstVectorView<typename Exec::memory_space> const& x) {
+  Index const n = x.size();
+  // Host and device exchange arrays that are contiguous alone.
+  Kokkos::View<double*, typename Exec::memory_space> const flat(
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::host_coordinates"), std::size_t(3 * n));
+  kernels::Field<double> const field{flat.data(), flat.data() + n, flat.data() + 2 * n};
+  kernels::launch("gridmorph::host_coordinates", exec, 0, n, detail::CopyVectors{x.array(), field});
+  Coordinates const out(n);
+  Index first = 0;
+  for (auto const& to : {out.x, out.y, out.z}) {
+    Kokkos::deep_copy(exec, to, Kokkos::subview(flat, std::pair(first, first + n)));
+    first += n;
+  }
+  compat::fence(exec, "gridmorph::host_coordinates (read by the host)");
+  return out;
+}
+
+template <BuiltFor Exec>
 Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options) {
   MorphPlan const plan(host_instance(exec), mesh, motion, options);
   return moved_by(exec, plan, mesh.coordinates, [&](auto const& boundary, auto const& x, auto const& y, auto const& z) {
@@ -330,7 +349,8 @@ Coordinates morph(Exec const& exec, Mesh const& mesh, Motion const& motion, Plan
   });
 }
 
-#define GRIDMORPH_INSTANTIATE(Exec) \
+#define GRIDMORPH_INSTANTIATE(Exec)                                                               \
+  template Coordinates host_coordinates(Exec const&, ConstVectorView<Exec::memory_space> const&); \
   template Coordinates morph(Exec const&, Mesh const&, Motion const&, PlanOptions const&);
 GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_INSTANTIATE)
 #undef GRIDMORPH_INSTANTIATE

@@ -1,8 +1,10 @@
 // From a mesh and rules to a morphed mesh: in one call, or by a plan that serves many displacements.
 #pragma once
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/vector_view.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/options.hpp>
 #include <gridmorph/quality/indexed_mesh.hpp>
@@ -115,9 +117,15 @@ class MorphPlan {
   std::shared_ptr<SmoothingMap const> smoothing_;
 };
 
+/// The coordinates of a mesh that lie in the memory of an execution space, in any layout, on the host: what plans read.
+/// Fences `exec`. Cost: a copy of them there and one on the host.
+template <BuiltFor ExecutionSpace>
+Coordinates host_coordinates(ExecutionSpace const& exec,
+                             ConstVectorView<typename ExecutionSpace::memory_space> const& x);
+
 /// New coordinates of a mesh whose patches move as the rules say, on the host; fences `exec`, where it plans too if
 /// that is one of the host. Programs that morph again keep a MorphPlan and a Morpher.
-template <class ExecutionSpace>
+template <BuiltFor ExecutionSpace>
 Coordinates morph(ExecutionSpace const& exec, Mesh const& mesh, Motion const& motion, PlanOptions const& options = {});
 
 }  // namespace gridmorph

@@ -23,7 +23,7 @@ using detail::require_all_nodes;
 using detail::require_as_many;
 using detail::with_axes;
 
-template <class Exec>
+template <BuiltFor Exec>
 struct Morpher<Exec>::State {
   using Field = stages::StageField<Exec>;
 
@@ -181,42 +181,42 @@ MorpherOptions with_smoothing(MorpherOptions options, MorphPlan const& plan) {
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 Morpher<Exec>::Morpher(Exec const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options)
     : state_(state_of<Exec, State>(exec, plan, baseline, options)) {}
 
-template <class Exec>
+template <BuiltFor Exec>
 Morpher<Exec>::Morpher(Exec const& exec, UnstructuredPlan const& plan, In const& baseline,
                        MorpherOptions const& options)
     : state_(state_of<Exec, State>(exec, plan, baseline, options)) {}
 
-template <class Exec>
+template <BuiltFor Exec>
 Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
     : Morpher(PlanAccess::blocks(plan)
                   ? Morpher(exec, PlanAccess::blocks(plan)->plan(), baseline, with_smoothing(options, plan))
                   : Morpher(exec, PlanAccess::elements(plan)->plan, baseline, with_smoothing(options, plan))) {}
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {
   positions(exec, {&boundary, 1}, {&moved, 1});
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::positions(Exec const& exec, std::span<In const> boundary, std::span<Out const> moved) const {
   state_->template run<true>("gridmorph::Morpher::positions", exec, boundary, moved);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::displacements(Exec const& exec, In const& boundary, Out const& u) const {
   displacements(exec, {&boundary, 1}, {&u, 1});
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::displacements(Exec const& exec, std::span<In const> boundary, std::span<Out const> u) const {
   state_->template run<false>("gridmorph::Morpher::displacements", exec, boundary, u);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& rate, Out const& v) const {
   char const* const who = "gridmorph::Morpher::velocities";
   if (state_->list.fields.size() < 2)
@@ -227,7 +227,7 @@ void Morpher<Exec>::velocities(Exec const& exec, In const& boundary, In const& r
   state_->run_rate(exec, boundary, rate, v);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 void Morpher<Exec>::transpose(Exec const& exec, In const& boundary, In const& dJ_du, Out const& dJ_db) const {
   char const* const who = "gridmorph::Morpher::transpose";
   if (!state_->transposed)
@@ -239,7 +239,7 @@ void Morpher<Exec>::transpose(Exec const& exec, In const& boundary, In const& dJ
   state_->run_transpose(exec, boundary, dJ_du, dJ_db);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 typename Morpher<Exec>::In Morpher<Exec>::background_displacements(std::size_t part) const {
   for (auto const& any : state_->list.stages) {
     auto const* far = std::get_if<stages::FarField<Exec>>(&any);

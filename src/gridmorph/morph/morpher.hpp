@@ -1,6 +1,7 @@
 // Applies a plan: boundary displacements in, new positions, displacements or velocities of every node out.
 #pragma once
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -41,7 +42,7 @@ struct MorpherOptions {
 /// and the background mesh. With MorpherOptions::transpose about 50 bytes more per node on the faces of pieces, 24 per
 /// node with it or with MorpherOptions::velocity where parts have a motion in common (kernels/common_motion.hpp);
 /// elements 12 more for each item of their rows, 4 for each node that reads a lattice, 150 per node.
-template <class ExecutionSpace>
+template <BuiltFor ExecutionSpace>
 class Morpher {
  public:
   using MemorySpace = typename ExecutionSpace::memory_space;

@@ -3,7 +3,7 @@
 
 namespace gridmorph {
 
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,
     std::span<Measure const> measures) {

@@ -85,7 +85,7 @@ std::vector<kernels::CellChunk> of_zones(std::vector<kernels::CellChunk> table, 
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typename Exec::memory_space> const& input) {
   using Policy = kernels::CellPolicy<Exec>;
   bool const against_baseline = check_sizes(mesh, input);
@@ -125,7 +125,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
   return sum_of(exec, of_chunk, [&](Index cell) { return detail::place_of_cell(mesh, cell); });
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                     CertificateInput<typename Exec::memory_space> const& input) {
   bool const against_baseline = check_sizes(mesh, input);

@@ -21,10 +21,10 @@ struct CertificateInput {
 /// Looks at every cell; fences. Deterministic. Cost per cell: 260 to 710 flops and its corners read once in blocks,
 /// about 1000 flops in elements; memory: 48 bytes per thousand cells. Throws MeshError for Views that are shorter than
 /// the mesh.
-template <class Exec>
+template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typename Exec::memory_space> const& input);
 /// Of a mesh with elements.
-template <class Exec>
+template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                     CertificateInput<typename Exec::memory_space> const& input);
 

@@ -15,7 +15,7 @@ struct Balance {
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline) {
   detail::check_size(mesh, baseline, "coordinates for the handedness of zones");

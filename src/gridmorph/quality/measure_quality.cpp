@@ -197,7 +197,7 @@ std::vector<detail::PartialSums> measured(
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input) {
   bool const against_baseline = input.baseline.x.extent(0) > 0;

@@ -22,7 +22,7 @@ struct SmallestCell {
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 CellValue min_determinant(Exec const& exec, Mesh const& mesh,
                           CoordinateViews<typename Exec::memory_space> const& coordinates,
                           std::span<int const> handedness, std::span<CellBox const> boxes) {

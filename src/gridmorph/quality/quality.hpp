@@ -5,6 +5,7 @@
 // first cell in mesh order, sums are made in chunks of fixed size and added in mesh order.
 #pragma once
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -245,7 +246,7 @@ struct QualityInput {
 /// +1 or -1 per zone: the sign that makes most corner Jacobians of a zone positive. Left-handed zones are valid CGNS;
 /// decide from the baseline, so that a zone that morphing turned inside out does not pass as left-handed.
 /// Returns numbers, so it fences.
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
                                  CoordinateViews<typename Exec::memory_space> const& baseline);
 
@@ -257,13 +258,13 @@ std::vector<int> zone_handedness(Exec const& exec, Mesh const& mesh,
 /// bytes per node of the walls. Cost: one pass over the cells (about 1000 flops each, as many cells at once as the
 /// registers hold), one over the volumes, one each for growth and face area ratios (500 flops and 48 comparisons
 /// together); of regions once more.
-template <class Exec>
+template <BuiltFor Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh,
                               QualityInput<typename Exec::memory_space> const& input);
 
 /// Values of the given measures in every cell, (n_cells) each, in the order asked for, and nothing else:
 /// measure_quality() with fields.
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, QualityInput<typename Exec::memory_space> const& input,
     std::span<Measure const> measures);
@@ -278,7 +279,7 @@ struct CellValue {
 /// The smallest 3x3x3 determinant over the boxes (the first one in the order of the boxes if several are equal), as the
 /// report after each stage needs it. `handedness`: zone_handedness of the baseline. Fences. Throws MeshError for boxes
 /// outside their zone.
-template <class Exec>
+template <BuiltFor Exec>
 CellValue min_determinant(Exec const& exec, Mesh const& mesh,
                           CoordinateViews<typename Exec::memory_space> const& coordinates,
                           std::span<int const> handedness, std::span<CellBox const> boxes);

@@ -220,7 +220,7 @@ std::vector<detail::PartialSums> measure_elements(Exec const& exec, Mesh const& 
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input) {
@@ -259,7 +259,7 @@ QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTo
   return report;
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
     UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures) {

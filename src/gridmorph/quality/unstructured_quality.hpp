@@ -75,13 +75,13 @@ std::string describe(Mesh const& mesh, NegativeElements const& negative);
 
 /// Measures every element and the walls. Returns numbers, so it fences. Throws MeshError when Views are shorter than
 /// the mesh. Memory: 8 bytes per element for volumes and, on devices, the element lists and neighbours.
-template <class Exec>
+template <BuiltFor Exec>
 QualityReport measure_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                               BoundaryFacePatches const& face_patches,
                               UnstructuredQualityInput<typename Exec::memory_space> const& input);
 
 /// Values of the given measures in every element, (n_elements) each, in the order asked for.
-template <class Exec>
+template <BuiltFor Exec>
 std::vector<Kokkos::View<double*, typename Exec::memory_space>> cell_fields(
     Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
     UnstructuredQualityInput<typename Exec::memory_space> const& input, std::span<Measure const> measures);

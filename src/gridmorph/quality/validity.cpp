@@ -26,7 +26,7 @@ struct ElementDeterminant {
 
 }  // namespace
 
-template <class Exec>
+template <BuiltFor Exec>
 struct ValidityCheck<Exec>::State {
   Index n_nodes;
   bool unstructured;
@@ -47,7 +47,7 @@ struct ValidityCheck<Exec>::State {
         of_mesh(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::ValidityCheck::of_mesh")) {}
 };
 
-template <class Exec>
+template <BuiltFor Exec>
 ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh) {
   auto state = std::make_shared<State>(exec, mesh.n_nodes(), false, detail::chunks_of(mesh));
   state->zones = detail::upload(exec, "gridmorph::ValidityCheck::zones",
@@ -55,7 +55,7 @@ ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh) {
   state_ = std::move(state);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology) {
   auto state = std::make_shared<State>(exec, mesh.n_nodes(), true, detail::element_chunks(mesh));
   state->first_element = detail::upload(exec, "gridmorph::ValidityCheck::zones", detail::first_elements(mesh));
@@ -65,7 +65,7 @@ ValidityCheck<Exec>::ValidityCheck(Exec const& exec, Mesh const& mesh, Unstructu
   state_ = std::move(state);
 }
 
-template <class Exec>
+template <BuiltFor Exec>
 typename ValidityCheck<Exec>::Result ValidityCheck<Exec>::operator()(Exec const& exec,
                                                                      ConstVectorView<MemorySpace> const& x) const {
   State const& s = *state_;

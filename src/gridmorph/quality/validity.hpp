@@ -22,7 +22,7 @@ struct Validity {
 /// Cost per cell: about 530 flops and its corners read once, 0.03 to 0.04 microseconds on one core. Memory: 60 bytes
 /// per thousand cells; of unstructured meshes a byte per element, and where the host's memory is out of reach the
 /// element lists. On the host these are the mesh's own, which must outlive the check. One call at a time.
-template <class ExecutionSpace>
+template <BuiltFor ExecutionSpace>
 class ValidityCheck {
  public:
   using MemorySpace = typename ExecutionSpace::memory_space;
