@@ -75,14 +75,16 @@ bool is_regular(HexLinks const& links, Index32 cell, CellEdge const& edge) {
 class Sheets {
  public:
   Sheets(HostInstance const& host, HexLinks const& links, Index n_cells)
-      : links_(links), irregular_(std::size_t(n_cells), 0), sets_(std::size_t(6 * n_cells)) {
+      : links_(links), irregular_(std::size_t(n_cells), 0) {
     detail::for_all(host, "gridmorph::regular_edges", n_cells, [&](Index e) {
       if (!links.is_hexahedron(Index32(e))) return;
       for (std::size_t k = 0; k < 12; ++k)
         if (!is_regular(links, Index32(e), edges[k])) irregular_[std::size_t(e)] |= std::uint16_t(1u << k);
     });
+    DisjointSets<Index32> sets(std::size_t(6 * n_cells));  // of face()
     for (Index32 e = 0; e < n_cells; ++e)
-      if (links.is_hexahedron(e)) join(e);
+      if (links.is_hexahedron(e)) join(e, sets);
+    sheet_ = sets.roots();
     limit_.assign(std::size_t(6 * n_cells), 0);
     for (Index32 e = 0; e < n_cells; ++e)
       for (std::size_t k = 0; k < 12; ++k)
@@ -92,8 +94,8 @@ class Sheets {
   }
 
   /// Blocks end at the whole sheet of a side.
-  void make_limit(CellSide s) { limit_[std::size_t(sets_.root(face(s)))] = 1; }
-  [[nodiscard]] bool is_limit(CellSide s) { return limit_[std::size_t(sets_.root(face(s)))] != 0; }
+  void make_limit(CellSide s) { limit_[std::size_t(sheet_[std::size_t(face(s))])] = 1; }
+  [[nodiscard]] bool is_limit(CellSide s) const { return limit_[std::size_t(sheet_[std::size_t(face(s))])] != 0; }
 
  private:
   /// One number for both sides of a face.
@@ -102,24 +104,24 @@ class Sheets {
     return other < 0 ? s : std::min(s, other);
   }
   /// At each regular edge inside, a side with the one that goes on behind the other side.
-  void join(Index32 e) {
+  void join(Index32 e, DisjointSets<Index32>& sets) const {
     for (std::size_t k = 0; k < 12; ++k) {
       if ((irregular_[std::size_t(e)] & (1u << k)) != 0) continue;
       for (auto const& [side, through] :
            {std::pair(edges[k].side, edges[k].other), std::pair(edges[k].other, edges[k].side)}) {
         CellSide const own = cell_side(e, side);
-        if (links_.behind(own) < 0 || links_.behind(cell_side(e, through)) < 0) continue;
+        if (links_.behind(own) < own || links_.behind(cell_side(e, through)) < 0) continue;  // once for both cells
         Around const on = next(links_, {e, through, side});
         CellSide const opposite = cell_side(on.cell, on.through);
-        if (links_.behind(opposite) >= 0) sets_.join(face(own), face(opposite));
+        if (links_.behind(opposite) >= 0) sets.join(own, face(opposite));
       }
     }
   }
 
   HexLinks const& links_;
   std::vector<std::uint16_t> irregular_;  ///< a bit per edge
-  DisjointSets<Index32> sets_;            ///< of face()
-  std::vector<std::uint8_t> limit_;       ///< per root
+  std::vector<Index32> sheet_;            ///< of face(), by the smallest of its faces
+  std::vector<std::uint8_t> limit_;       ///< per sheet
 };
 
 /// Where a cell lies in its block.
