@@ -114,7 +114,7 @@ void MorphPlan::State::plan_elements(HostInstance const& host, Mesh const& mesh,
   for (auto const& problem : face_patches.problems) problems.add(problem);
   problems.throw_if_any<MeshError>();
   Stopwatch watch;
-  NodeGraph graph = make_node_graph(mesh, topology.elements_of_nodes, row_of_nodes(mesh, motion));
+  NodeGraph graph = make_node_graph(host, mesh, topology.elements_of_nodes, row_of_nodes(mesh, motion));
   bool const any = series.steps > 0 || options.elements.motion >= 0;
   BoundaryConditions boundary =
       boundary_conditions(host, mesh, topology, face_patches, graph, motion, options.elements.walls,
