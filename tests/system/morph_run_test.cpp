@@ -267,7 +267,7 @@ TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
                             "times the largest it had"})
     EXPECT_NE(refused.err.find(words), std::string::npos) << words << refused.err;
   EXPECT_FALSE(std::filesystem::exists(path("out.cgns")));
-  write_case("case.toml", torn + "[guard]\nwrite_inverted = true\n");
+  write_case("case.toml", torn + "write_inverted = true\n");
   Outcome const written = gridmorph("morph case.toml");
   EXPECT_EQ(written.status, 1);
   EXPECT_EQ(written.out.find("valid up to"), std::string::npos) << "who wants it all does not wait for the share";
