@@ -64,7 +64,7 @@ TEST(Cascade, ItsVelocitiesAreThoseOfDifferences) {
                          rule_for({"periodic_*"}, FreeRule{})}),
               PlanOptions{});
   ASSERT_EQ(prepared.plan.turns_of_bodies.images.size(), 7u);
-  Morpher<Exec> const morpher(Exec(), prepared.plan, c.mesh.coordinates, {1, true});
+  auto const morpher = MorpherAccess::of(Exec(), prepared.plan, c.mesh.coordinates, {1, true});
   auto const view = [](std::vector<Vec3> const& v) {
     return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
   };
