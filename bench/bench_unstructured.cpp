@@ -213,7 +213,7 @@ struct Apply {
     UnstructuredPlan const& plan = ball.plan();
     NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
     auto const morpher = MorpherAccess::of(exec, plan, baseline);
-    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const given = ball.prepared().boundary_displacement();
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
     double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
@@ -230,7 +230,7 @@ struct Transpose {
     UnstructuredPlan const& plan = ball.plan();
     NodeArrays<Memory> const baseline(ball.mesh.coordinates);
     auto const morpher = MorpherAccess::of(exec, plan, baseline, {.transpose = true});
-    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const given = ball.prepared().boundary_displacement();
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     auto const out = Kokkos::create_mirror(Memory(), boundary);
     double const mean = time_iterations(state, exec, [&] { morpher.transpose(exec, boundary, baseline, out); });

@@ -311,7 +311,7 @@ class UnstructuredManners : public ::testing::Test {
   }
   PreparedUnstructured prepared = prepared_by(NearFieldMethod::lattice);
   Exec exec;
-  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement());
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
   std::vector<Morpher<Exec>::In> two_in{boundary, boundary};
   std::vector<Morpher<Exec>::Out> two_out{u, u};
@@ -399,7 +399,7 @@ TEST_F(UnstructuredManners, OrdersAreFoundOnTheInstanceThatIsHandedOver) {
 TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   Kokkos::Serial const other;
   Coordinates const moved(mesh.n_nodes());
-  std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
+  std::vector<Vec3> const given = prepared.boundary_displacement();
   Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
   Listener const listener;
   auto const morpher = MorpherAccess::of(other, prepared.plan, mesh.coordinates, {1, true});

@@ -33,7 +33,7 @@ struct UnstructuredCase {
 
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, PlanOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
-    out.boundary = out.prepared.boundary_displacement(mesh);
+    out.boundary = out.prepared.boundary_displacement();
     apply_on_host(MorpherAccess::of(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
     return out;
   }
@@ -79,7 +79,7 @@ template <class Exec>
 Coordinates positions_on(Exec const& exec, UnstructuredCase const& c, Motion const& motion,
                          PlanOptions const& options) {
   auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, motion, options);
-  auto const boundary = prepared.boundary_displacement(c.mesh);
+  auto const boundary = prepared.boundary_displacement();
   Coordinates x(c.mesh.n_nodes());
   auto const morpher = MorpherAccess::of(exec, prepared.plan, c.mesh.coordinates);
   morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);

@@ -51,9 +51,7 @@ struct MorphPlan::State {
 
 std::vector<Vec3> const& MorphPlan::State::displacement_by_rules() const {
   std::lock_guard const lock(evaluating);
-  if (!displacement)
-    displacement = blocks ? blocks->boundary_displacement()
-                          : elements->boundary_displacement(elements->boundary.motion->boundary().mesh());
+  if (!displacement) displacement = blocks ? blocks->boundary_displacement() : elements->boundary_displacement();
   return *displacement;
 }
 
