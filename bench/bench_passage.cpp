@@ -20,7 +20,7 @@
 
 #include <generators/passage.hpp>
 #include <generators/passage_motion.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <optional>
@@ -125,19 +125,16 @@ void add(std::string const& name, double fixed_bytes, double bytes_per_parameter
 
 void register_all() {
   add("workflow", 48, 40, [](auto const& exec, Passage const& p, auto const& mesh) {
-    using Exec = std::decay_t<decltype(exec)>;
     return [&, mesh] {
-      Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+      auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh);
       morpher.positions(exec, mesh.boundary, mesh);
     };
   });
   add("plan_made", 0, 32, [](auto const& exec, Passage const& p, auto const& mesh) {
-    using Exec = std::decay_t<decltype(exec)>;
-    return [&, mesh] { Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh); };
+    return [&, mesh] { auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh); };
   });
   auto const apply = [](auto const& exec, Passage const& p, auto const& mesh) {
-    using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+    auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh);
     return [&, mesh, morpher] { morpher.positions(exec, mesh.boundary, mesh); };
   };
   add("apply", 48, 8, apply);
@@ -145,7 +142,7 @@ void register_all() {
   add("rotate_to_the_end", 48, 8, apply, 0.25);
   auto const transpose = [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh, {.transpose = true});
+    auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh, {.transpose = true});
     auto const out = Kokkos::create_mirror(typename Exec::memory_space(), mesh.boundary);
     return [&, mesh, morpher, out] { morpher.transpose(exec, mesh.boundary, mesh, out); };
   };
@@ -153,20 +150,18 @@ void register_all() {
   add("transpose_rotate", 24, 8, transpose, 0.0);
   add("transpose_rotate_to_the_end", 24, 8, transpose, 0.25);
   add("apply_to", 48, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
-    using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+    auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh);
     std::decay_t<decltype(mesh)> const to(exec, p);
     return [&, mesh, morpher, to] { morpher.positions(exec, mesh.boundary, to); };
   });
   add("displace", 24, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
-    using Exec = std::decay_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh);
+    auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh);
     return [&, mesh, morpher] { morpher.displacements(exec, mesh.boundary, mesh); };
   });
   add("displace_4", 96, 8, [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     using Memory = typename Exec::memory_space;
-    Morpher<Exec> const morpher(exec, p.prepared.plan(), mesh, {4});
+    auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh, {4});
     Index const n = p.mesh.n_nodes();
     Kokkos::View<double* [4][3], Kokkos::LayoutLeft, Memory> const fields("gridmorph::bench::fields", n);
     std::vector<typename Morpher<Exec>::In> const boundary(4, mesh.boundary);

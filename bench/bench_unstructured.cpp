@@ -30,7 +30,7 @@
 #include <generators/ball_demo.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/morph/stages/smooth_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -196,7 +196,7 @@ struct BackgroundMesh {
     auto const& plan = ball.plan().background_morph->plan();
     NodeArrays<Memory> const x(ball.plan().background->mesh.coordinates), u(ball.plan().background->mesh.coordinates);
     Kokkos::View<Vec3*, Memory> const boundary("gridmorph::bench::boundary", plan.boundary_nodes.size());
-    Morpher<ExecutionSpace> const morpher(exec, plan, x);
+    auto const morpher = MorpherAccess::of(exec, plan, x);
     double const mean = time_iterations(state, exec, [&] { morpher.displacements(exec, boundary, u); });
     set_rates(state, ball.plan().background->mesh.n_nodes(), 48);
     state.counters["nodes of the mesh/s"] = double(ball.mesh.n_nodes()) / mean;
@@ -212,8 +212,8 @@ struct Apply {
     BallCase const& ball = ball_case(state.range(0), in_order);
     UnstructuredPlan const& plan = ball.plan();
     NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
-    Morpher<ExecutionSpace> const morpher(exec, plan, baseline);
-    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const morpher = MorpherAccess::of(exec, plan, baseline);
+    auto const given = ball.prepared().boundary_displacement();
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
     double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
@@ -229,8 +229,8 @@ struct Transpose {
     BallCase const& ball = ball_case(state.range(0), true);
     UnstructuredPlan const& plan = ball.plan();
     NodeArrays<Memory> const baseline(ball.mesh.coordinates);
-    Morpher<ExecutionSpace> const morpher(exec, plan, baseline, {.transpose = true});
-    auto const given = ball.prepared().boundary_displacement(ball.mesh);
+    auto const morpher = MorpherAccess::of(exec, plan, baseline, {.transpose = true});
+    auto const given = ball.prepared().boundary_displacement();
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     auto const out = Kokkos::create_mirror(Memory(), boundary);
     double const mean = time_iterations(state, exec, [&] { morpher.transpose(exec, boundary, baseline, out); });

@@ -6,7 +6,7 @@
 
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/morph/device_plan.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <functional>
@@ -77,7 +77,7 @@ struct Apply {
   Timed operator()(Exec const& exec, PreparedMorph const& prepared,
                    NodeArrays<typename Exec::memory_space> const& x) const {
     Plan const& plan = prepared.plan();
-    Morpher<Exec> const morpher(exec, plan, x);
+    auto const morpher = MorpherAccess::of(exec, plan, x);
     Kokkos::View<Vec3*, typename Exec::memory_space> const boundary("gridmorph::bench::boundary",
                                                                     plan.boundary_nodes.size());
     Kokkos::deep_copy(exec, boundary, Vec3{1e-9, 2e-9, 3e-9});

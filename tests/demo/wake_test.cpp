@@ -73,8 +73,8 @@ TEST(PassageWake, OfHexahedraTurnsWithItsBlade) {
   UnstructuredMorphed const morphed = one.guarded_morph(turned(angle));
   Boundary const& boundary = morphed.prepared.boundary.motion->boundary();
   std::vector<Index> nodes;
-  for (std::size_t p = 0; p < boundary.mesh().patches.size(); ++p)
-    if (boundary.mesh().patches[p].name == "wake") nodes = boundary.surface(int(p)).nodes;
+  for (std::size_t p = 0; p < boundary.patches().size(); ++p)
+    if (boundary.patches()[p].name == "wake") nodes = boundary.surface(int(p)).nodes;
   expect_turned(one.mesh, nodes, morphed.x);
   EXPECT_EQ(one.inverted(morphed.x), 0);
 }

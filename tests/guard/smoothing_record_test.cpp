@@ -8,6 +8,7 @@
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/quality/quality.hpp>
 
@@ -46,7 +47,7 @@ Recorded const& recorded(Case const& c) {
     Coordinates smoothed = copy_of(run.morphed.position);
     (void)smooth_frozen({}, run.prepared, handedness, smoothed, lost);
     if (largest_distance(smoothed, run.morphed.position) == 0) continue;
-    SmoothingRecord record(run.prepared);
+    SmoothingRecord record(PlanAccess::of(prepare(c.mesh(), c.motion(factor), c.options)));
     record.add(run.boundary, run.morphed.position, smoothed);
     Frozen const map = record.map();
     return known.try_emplace(c.name, Recorded{std::move(run), std::move(smoothed), map}).first->second;
@@ -73,7 +74,8 @@ TEST_P(FrozenGuard, GivesBackWhatWasRecordedAndIsLinear) {
       << "nothing moves";
   // In place: the baseline is gone when shifts are added.
   Coordinates in_place = copy_of(mesh.coordinates);
-  Morpher<Exec>(Exec(), run.plan(), in_place, {1, false, map}).positions(Exec(), Both<>::view(run.boundary), in_place);
+  MorpherAccess::of(Exec(), run.plan(), in_place, {1, false, map})
+      .positions(Exec(), Both<>::view(run.boundary), in_place);
   Exec().fence();
   EXPECT_EQ(different_bits(in_place, both.positions(both.frozen, run.boundary)), 0);
   // Points that move in space: a scaled displacement has the scaled shift, and its rate that of it.

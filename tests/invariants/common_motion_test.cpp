@@ -278,7 +278,7 @@ TEST(CommonMotionOfParts, HasTheSameBitsOnAllHostSpacesAndWithManyFields) {
     std::vector<Vec3> other = boundary;
     for (Vec3& u : other) u = -0.3 * u;
     Coordinates one(mesh.n_nodes()), two(mesh.n_nodes());
-    Morpher<Host> const morpher({}, prepared.plan(), mesh.coordinates, {.fields = 2});
+    auto const morpher = MorpherAccess::of(Host(), prepared.plan(), mesh.coordinates, {.fields = 2});
     using View = Kokkos::View<Vec3 const*, Kokkos::HostSpace>;
     std::vector<Morpher<Host>::In> const in{View(other.data(), other.size()), View(boundary.data(), boundary.size())};
     std::vector<Morpher<Host>::Out> const out{one, two};

@@ -8,6 +8,7 @@
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
 #include <gtest/gtest.h>
@@ -91,14 +92,15 @@ class Manners : public ::testing::Test {
  protected:
   static Sector sector() { return {}; }
   Mesh mesh = annulus_sector(sector(), 1);
-  PreparedMorph prepared = [this] {
+  MorphPlan plan = [this] {
     PlanOptions options;
     options.boundary_layers = {{{"hub"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::translate}};
     Motion m = motion({rule({"hub", "case", "inlet"}, function_rule(turning_waves(sector(), 0.05))),
                        rule({"outlet"}, FreeRule{FreeRule::Constraint::axial})});
     m.axis = {sector().origin, sector().axis};
-    return prepare(mesh, m, options);
+    return PlanAccess::of(prepare(mesh, m, options));
   }();
+  PreparedMorph const& prepared = *PlanAccess::blocks(plan);
   Exec exec;
   Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement());
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
@@ -108,7 +110,7 @@ class Manners : public ::testing::Test {
 
 TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true});
   morpher.displacements(exec, boundary, u);
   morpher.positions(exec, boundary, u);
   exec.fence();
@@ -126,12 +128,13 @@ TEST_F(Manners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
 TEST_F(Manners, AFrozenGuardAddsKernelsAndNothingElse) {
   std::vector<Vec3> const given = prepared.boundary_displacement();
   Coordinates plain(mesh.n_nodes()), guarded(mesh.n_nodes());
-  apply_on_host(Morpher<Kokkos::DefaultHostExecutionSpace>({}, prepared.plan(), mesh.coordinates), given, plain);
+  apply_on_host(MorpherAccess::of(Kokkos::DefaultHostExecutionSpace(), prepared.plan(), mesh.coordinates), given,
+                plain);
   for (Index n = 0; n < plain.size(); ++n) guarded.set(n, plain[n] + Vec3{1e-3, 0, 0});
-  SmoothingRecord smoothing(prepared);
+  SmoothingRecord smoothing(plan);
   smoothing.add(given, plain, guarded);
   Listener const made;
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true, smoothing.map()});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true, smoothing.map()});
   exec.fence();
   expect_labels(record.allocations);
   std::vector<std::string> first;
@@ -154,7 +157,7 @@ TEST_F(Manners, AFrozenGuardAddsKernelsAndNothingElse) {
 }
 
 TEST_F(Manners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true});
   exec.fence();
   {
     Listener const listener;
@@ -179,7 +182,7 @@ void expect_refused(std::size_t given, std::size_t needed, char const* list, Cal
 }
 
 TEST_F(Manners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true});
   std::size_t const n = boundary.extent(0);
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
@@ -210,7 +213,7 @@ TEST_F(Manners, MeshesWithoutAllTheirCoordinatesAreRefused) {
 }
 
 TEST_F(Manners, StagesAreRegionsOfProfiles) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true});
   Listener const listener;
   morpher.positions(exec, boundary, u);
   std::vector<std::string> expected{"gridmorph::stage boundary"};
@@ -229,7 +232,7 @@ TEST_F(Manners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   std::vector<Vec3> const given = prepared.boundary_displacement();
   Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
   Listener const listener;
-  Morpher<Kokkos::Serial> const morpher(other, prepared.plan(), mesh.coordinates, {2, true});
+  auto const morpher = MorpherAccess::of(other, prepared.plan(), mesh.coordinates, {2, true});
   morpher.positions(other, host_boundary, moved);
   morpher.displacements(other, host_boundary, moved);
   morpher.velocities(other, host_boundary, host_boundary, moved);
@@ -240,7 +243,7 @@ TEST_F(Manners, EverythingRunsOnTheInstanceThatIsHandedOver) {
 #endif
 
 TEST_F(Manners, EveryMorphRunsTheSameKernels) {
-  Morpher<Exec> const morpher(exec, prepared.plan(), x, {2, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x, {2, true});
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;
@@ -308,7 +311,7 @@ class UnstructuredManners : public ::testing::Test {
   }
   PreparedUnstructured prepared = prepared_by(NearFieldMethod::lattice);
   Exec exec;
-  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement(mesh));
+  Kokkos::View<Vec3*, Memory> boundary = upload<Memory>(prepared.boundary_displacement());
   DeviceField<Memory> x{mesh.coordinates}, u{Coordinates(mesh.n_nodes())};
   std::vector<Morpher<Exec>::In> two_in{boundary, boundary};
   std::vector<Morpher<Exec>::Out> two_out{u, u};
@@ -316,7 +319,7 @@ class UnstructuredManners : public ::testing::Test {
 
 TEST_F(UnstructuredManners, EveryAllocationAndKernelOfTheLibraryHasItsLabel) {
   Listener const listener;
-  Morpher<Exec> const morpher(exec, prepared.plan, x);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, x);
   morpher.positions(exec, boundary, u);
   exec.fence();
   EXPECT_GE(record.allocations.size(), 20u);
@@ -348,15 +351,15 @@ TEST_F(UnstructuredManners, MorphingAllocatesNothingCopiesNothingAndDoesNotFence
     morpher.velocities(exec, boundary, boundary, u);
     morpher.displacements(exec, two_in, two_out);
   };
-  expect_only_kernels(Morpher<Exec>(exec, prepared.plan, x, {1, true}), calls);
+  expect_only_kernels(MorpherAccess::of(exec, prepared.plan, x, {1, true}), calls);
   auto const layers = prepared_by(NearFieldMethod::layers);
-  expect_only_kernels(Morpher<Exec>(exec, layers.plan, x, {1, true}), calls);
+  expect_only_kernels(MorpherAccess::of(exec, layers.plan, x, {1, true}), calls);
   for (char const* kernel : {"gridmorph::near::seeds", "gridmorph::near::layers"})
     EXPECT_NE(std::find(record.kernels.begin(), record.kernels.end(), kernel), record.kernels.end()) << kernel;
 }
 
 TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {
-  Morpher<Exec> const morpher(exec, prepared.plan, x);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, x);
   Listener const listener;
   morpher.positions(exec, boundary, u);
   std::vector<std::string> own;
@@ -396,10 +399,10 @@ TEST_F(UnstructuredManners, OrdersAreFoundOnTheInstanceThatIsHandedOver) {
 TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
   Kokkos::Serial const other;
   Coordinates const moved(mesh.n_nodes());
-  std::vector<Vec3> const given = prepared.boundary_displacement(mesh);
+  std::vector<Vec3> const given = prepared.boundary_displacement();
   Kokkos::View<Vec3 const*, Kokkos::HostSpace> const host_boundary(given.data(), given.size());
   Listener const listener;
-  Morpher<Kokkos::Serial> const morpher(other, prepared.plan, mesh.coordinates, {1, true});
+  auto const morpher = MorpherAccess::of(other, prepared.plan, mesh.coordinates, {1, true});
   morpher.positions(other, host_boundary, moved);
   morpher.displacements(other, host_boundary, moved);
   morpher.velocities(other, host_boundary, host_boundary, moved);
@@ -412,7 +415,7 @@ TEST_F(UnstructuredManners, EverythingRunsOnTheInstanceThatIsHandedOver) {
 #endif
 
 TEST_F(UnstructuredManners, BoundaryDisplacementsOfAnotherLengthAreRefused) {
-  Morpher<Exec> const morpher(exec, prepared.plan, x, {1, true});
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, x, {1, true});
   std::size_t const n = boundary.extent(0);
   for (std::size_t const other : {std::size_t(0), n - 1, n + 1}) {
     Kokkos::View<Vec3*, Memory> const list("gridmorph::test::list", other);
@@ -436,7 +439,7 @@ TEST_F(UnstructuredManners, MeshesWithoutCoordinatesAreRefused) {
 }
 
 TEST_F(UnstructuredManners, EveryMorphRunsTheSameKernels) {
-  Morpher<Exec> const morpher(exec, prepared.plan, x);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, x);
   std::vector<std::string> first;
   for (int n = 0; n < 3; ++n) {
     Listener const listener;

@@ -50,8 +50,8 @@ struct Rules {
   /// Of all patches of a family, by its rule.
   [[nodiscard]] Nodes nodes(std::string const& family) const {
     Nodes out;
-    for (std::size_t p = 0; p < of->boundary().mesh().patches.size(); ++p) {
-      if (of->boundary().mesh().patches[p].families.front() != family) continue;
+    for (std::size_t p = 0; p < of->boundary().patches().size(); ++p) {
+      if (of->boundary().patches()[p].families.front() != family) continue;
       std::vector<Vec3> const x = of->boundary().points(int(p));
       std::vector<Vec3> u(x.size());
       of->displacement(of->motion().patch[p].rule, x, u);

@@ -33,11 +33,11 @@ Mesh channel(int n, std::function<double(double y)> const& side) {
 
 std::map<Index, Vec3> displacements(BoundaryMotion const& moves, std::string const& patch, int rule) {
   std::map<Index, Vec3> out;
-  for (std::size_t p = 0; p < moves.boundary().mesh().patches.size(); ++p) {
-    Patch const& own = moves.boundary().mesh().patches[p];
+  for (std::size_t p = 0; p < moves.boundary().patches().size(); ++p) {
+    Patch const& own = moves.boundary().patches()[p];
     if (own.name != patch && (own.families.empty() || own.families.front() != patch)) continue;
     for (Index const n : moves.boundary().surface(int(p)).nodes) {
-      Vec3 const at = moves.boundary().mesh().coordinates[n];
+      Vec3 const at = moves.boundary().coordinates()[n];
       moves.displacement(rule, {&at, 1}, {&out[n], 1});
     }
   }

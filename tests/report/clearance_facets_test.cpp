@@ -4,7 +4,6 @@
 
 #include <gridmorph/boundary/inward_facets.hpp>
 #include <gridmorph/boundary/periodic_copies.hpp>
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
 #include <gridmorph/report/clearance_wall.hpp>
 
@@ -30,7 +29,7 @@ double from_blades(Vec3 const& p) {
 }
 
 SurfaceWall blade_of(Boundary const& boundary, Coordinates const& at) {
-  return SurfaceWall(InwardFacets(boundary, select_patches(boundary.mesh(), {"blade"})).at(at));
+  return SurfaceWall(InwardFacets(boundary, boundary.select_patches({"blade"})).at(at));
 }
 
 void expect_distances(SurfaceWall const& wall) {

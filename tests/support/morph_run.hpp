@@ -1,7 +1,7 @@
 // Runs a plan on an execution space: displacement and morphed coordinates of every node, back on the host.
 #pragma once
 
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <cstring>
@@ -53,7 +53,7 @@ Morphed run_plan(Exec const& exec, Mesh const& mesh, Plan const& plan, std::vect
   }
   // On the host these are the arrays themselves, not copies.
   DeviceField<Memory> const x(mesh.coordinates), u(nothing);
-  Morpher<Exec> const morpher(exec, plan, x);
+  auto const morpher = MorpherAccess::of(exec, plan, x);
   Morphed out;
   morpher.displacements(exec, upload<Memory>(boundary), u);
   exec.fence();

@@ -5,7 +5,7 @@
 #include "support/random.hpp"
 
 #include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 
 #include <cmath>
 #include <cstring>
@@ -37,7 +37,8 @@ struct LinearisedMorph {
   template <class AnyPlan>
   LinearisedMorph(AnyPlan const& plan, Coordinates const& baseline, std::vector<Vec3> const& at,
                   std::shared_ptr<SmoothingMap const> const& smoothing = nullptr)
-      : morpher(Exec(), plan, baseline, {.velocity = true, .smoothing = smoothing, .transpose = true}),
+      : morpher(
+            MorpherAccess::of(Exec(), plan, baseline, {.velocity = true, .smoothing = smoothing, .transpose = true})),
         boundary(coordinates_of(at)),
         n_nodes(baseline.size()) {}
 

@@ -4,6 +4,7 @@
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -32,8 +33,8 @@ struct UnstructuredCase {
 
   [[nodiscard]] UnstructuredMorphed morph(Motion const& motion, PlanOptions const& options = {}) const {
     UnstructuredMorphed out{prepare(mesh, topology, face_patches, motion, options), {}, Coordinates(mesh.n_nodes())};
-    out.boundary = out.prepared.boundary_displacement(mesh);
-    apply_on_host(Morpher<Host>(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
+    out.boundary = out.prepared.boundary_displacement();
+    apply_on_host(MorpherAccess::of(Host(), out.prepared.plan, mesh.coordinates), out.boundary, out.x);
     return out;
   }
 
@@ -78,9 +79,9 @@ template <class Exec>
 Coordinates positions_on(Exec const& exec, UnstructuredCase const& c, Motion const& motion,
                          PlanOptions const& options) {
   auto const prepared = prepare(exec, c.mesh, c.topology, c.face_patches, motion, options);
-  auto const boundary = prepared.boundary_displacement(c.mesh);
+  auto const boundary = prepared.boundary_displacement();
   Coordinates x(c.mesh.n_nodes());
-  Morpher<Exec> const morpher(exec, prepared.plan, c.mesh.coordinates);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, c.mesh.coordinates);
   morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()), x);
   exec.fence();
   return x;
@@ -94,7 +95,7 @@ struct RateError {
 template <class Boundary>
 RateError rate_error(UnstructuredCase const& c, UnstructuredPlan const& plan, Boundary const& boundary) {
   using Host = UnstructuredCase::Host;
-  Morpher<Host> const morpher(Host(), plan, c.mesh.coordinates, {1, true});
+  auto const morpher = MorpherAccess::of(Host(), plan, c.mesh.coordinates, {1, true});
   auto const view = [](std::vector<Vec3> const& v) {
     return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
   };

@@ -1,7 +1,7 @@
 // A plan with a frozen guard and the same plan without it.
 #pragma once
 
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 
 #include <algorithm>
@@ -45,7 +45,9 @@ struct Both {
 
   template <class AnyPlan>
   Both(AnyPlan const& plan, Coordinates const& x, Frozen const& map)
-      : baseline(x), plain(Space(), plan, x, {1, true}), frozen(Space(), plan, x, {1, true, map}) {}
+      : baseline(x),
+        plain(MorpherAccess::of(Space(), plan, x, {1, true})),
+        frozen(MorpherAccess::of(Space(), plan, x, {1, true, map})) {}
 
   static View view(Vectors const& v) { return View(v.data(), v.size()); }
   Coordinates run(auto const& call) const {

@@ -123,14 +123,14 @@ std::vector<std::map<Index, Vec3>> displacements(Boundary const& boundary, Bound
       auto const& own = boundary.surface(int(p)).nodes;
       nodes[r].insert(own.begin(), own.end());
     }
-  for (AnyConnection const& c : connections_of(boundary.mesh()))
+  for (AnyConnection const& c : boundary.connections())
     if (int const r = resolved.interface[std::size_t(c.number)].rule; c.periodic && r >= 0 && r < int(n_rules))
       for (auto const& [own, donor] : boundary.pairs(c.number)) nodes[std::size_t(r)].insert(own);
   std::vector<std::map<Index, Vec3>> out(n_rules);
   for (std::size_t r = 0; r < n_rules; ++r) {
     if (!motion.is_explicit(int(r))) continue;
     std::vector<Vec3> points, u(nodes[r].size());
-    for (Index const n : nodes[r]) points.push_back(boundary.mesh().coordinates[n]);
+    for (Index const n : nodes[r]) points.push_back(boundary.coordinates()[n]);
     motion.displacement(int(r), points, u);
     std::size_t at = 0;
     for (Index const n : nodes[r]) out[r][n] = u[at++];

@@ -64,11 +64,11 @@ TEST(Cascade, ItsVelocitiesAreThoseOfDifferences) {
                          rule_for({"periodic_*"}, FreeRule{})}),
               PlanOptions{});
   ASSERT_EQ(prepared.plan.turns_of_bodies.images.size(), 7u);
-  Morpher<Exec> const morpher(Exec(), prepared.plan, c.mesh.coordinates, {1, true});
+  auto const morpher = MorpherAccess::of(Exec(), prepared.plan, c.mesh.coordinates, {1, true});
   auto const view = [](std::vector<Vec3> const& v) {
     return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
   };
-  std::vector<Vec3> const at = prepared.boundary_displacement(c.mesh);
+  std::vector<Vec3> const at = prepared.boundary_displacement();
   std::vector<Vec3> rate, sides[2];
   constexpr double h = 1e-5;
   for (std::size_t k = 0; k < at.size(); ++k) {
@@ -102,8 +102,7 @@ TEST(Cascade, ItsTransposeHasTheProductsOfItsVelocities) {
               motion_of({rule_for({"airfoil"}, rotation({0.018, -0.02, 0}, {0, 0, 1}, std::numbers::pi / 18)),
                          rule_for({"periodic_*"}, FreeRule{})}),
               options);
-  LinearisedMorph<UnstructuredCase::Host> const at(prepared.plan, c.mesh.coordinates,
-                                                   prepared.boundary_displacement(c.mesh));
+  LinearisedMorph<UnstructuredCase::Host> const at(prepared.plan, c.mesh.coordinates, prepared.boundary_displacement());
   EXPECT_LE(product_error(at, 1), 1e-13);
 }
 

@@ -260,7 +260,7 @@ TEST(FittedBackground, NodesSlideOnSidesThatSlip) {
   using Host = UnstructuredCase::Host;
   Coordinates const& before = background.mesh.coordinates;
   Coordinates x(before.size());
-  apply_on_host(Morpher<Host>(Host(), plan, before), boundary, x);
+  apply_on_host(MorpherAccess::of(Host(), plan, before), boundary, x);
   double along = 0;
   for (Index n = 0; n < x.size(); ++n) {
     Vec3 const p = before[n], q = x[n];

@@ -8,12 +8,13 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
-#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::test {
@@ -34,8 +35,9 @@ struct Bar {
 
 TEST(FrozenGuardOfElements, SeveralDisplacementsComeBackAndAddUp) {
   Bar const bar;
-  UnstructuredMorphed const run = bar.c.morph(bar.motion(0.1));
-  auto const& plan = run.prepared.plan;
+  UnstructuredMorphed run = bar.c.morph(bar.motion(0.1));
+  MorphPlan const whole = PlanAccess::of(std::move(run.prepared));
+  auto const& plan = PlanAccess::elements(whole)->plan;
   Mesh const& mesh = bar.c.mesh;
   // Two displacements that differ, and shifts of nodes that no rule moves, whatever made them.
   Vectors const one = run.boundary;
@@ -46,7 +48,7 @@ TEST(FrozenGuardOfElements, SeveralDisplacementsComeBackAndAddUp) {
   std::vector<char> fixed(std::size_t(mesh.n_nodes()), 0);
   for (Index32 const n : plan.known) fixed[std::size_t(n)] = 1;
   Random random(3);
-  SmoothingRecord record(run.prepared);
+  SmoothingRecord record(whole);
   std::vector<Coordinates> wanted;
   for (Vectors const& boundary : {one, other}) {
     Coordinates const plain = bare.positions(bare.plain, boundary);
@@ -104,8 +106,9 @@ TEST(FrozenGuardOfElements, ATurnThatInvertsIsMendedAsTheGuardMendsIt) {
 
 TEST(FrozenGuardOfElements, RefusesWhatItIsNotOf) {
   Bar const bar;
-  UnstructuredMorphed const run = bar.c.morph(bar.motion(0.1));
-  SmoothingRecord record(run.prepared);
+  UnstructuredMorphed run = bar.c.morph(bar.motion(0.1));
+  MorphPlan const whole = PlanAccess::of(std::move(run.prepared));
+  SmoothingRecord record(whole);
   EXPECT_THROW(record.add(Vectors(3), run.x, run.x), ConfigError);
   EXPECT_THROW(record.add(run.boundary, run.x, Coordinates(4)), ConfigError);
   record.add(run.boundary, run.x, run.x);
@@ -117,7 +120,7 @@ TEST(FrozenGuardOfElements, RefusesWhatItIsNotOf) {
   other.n_nodes = run.x.size();
   other.n_boundary = Index(run.boundary.size()) + 1;
   auto const map = std::make_shared<SmoothingMap const>(other);
-  EXPECT_THROW(Morpher<Exec>(Exec(), run.prepared.plan, bar.c.mesh.coordinates, {1, false, map}), ConfigError);
+  EXPECT_THROW(Morpher<Exec>(Exec(), whole, bar.c.mesh.coordinates, {1, false, map}), ConfigError);
 }
 
 }  // namespace

@@ -316,7 +316,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
     auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
     MorpherOptions options{1, true};
     options.transpose = true;
-    Morpher<Case::Host> const morpher(Case::Host(), prepared.plan, c.mesh.coordinates, options);
+    auto const morpher = MorpherAccess::of(Case::Host(), prepared.plan, c.mesh.coordinates, options);
     auto const as_view = [](std::vector<Vec3> const& v) {
       return Kokkos::View<Vec3 const*, Kokkos::HostSpace>(v.data(), v.size());
     };

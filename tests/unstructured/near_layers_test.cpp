@@ -117,8 +117,7 @@ TEST(NearLayers, HaveTheVelocityOfTheirDifferences) {
   Case const c = rooted();
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, moves({1, 0, 1}, 0.05), by_layers());
   auto const [error, largest] = rate_error(c, prepared.plan, [&](double t) {
-    return prepare(c.mesh, c.topology, c.face_patches, moves({1, 0, 1}, 0.05 + t), by_layers())
-        .boundary_displacement(c.mesh);
+    return prepare(c.mesh, c.topology, c.face_patches, moves({1, 0, 1}, 0.05 + t), by_layers()).boundary_displacement();
   });
   EXPECT_GT(largest, 0.5);
   EXPECT_LT(error, 1e-7 * largest);

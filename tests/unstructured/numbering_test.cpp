@@ -147,7 +147,7 @@ double trembling(Bent const& bent, PlanOptions const& options, double noise, uns
   Case const other(shaken);
   auto const prepared = prepare(other.mesh, other.topology, other.face_patches, bent.motion, options);
   Coordinates x(shaken.n_nodes());
-  apply_on_host(Morpher<Case::Host>(Case::Host(), prepared.plan, shaken.coordinates), a.boundary, x);
+  apply_on_host(MorpherAccess::of(Case::Host(), prepared.plan, shaken.coordinates), a.boundary, x);
   double largest = 0, motion = 0;
   for (Index n = 0; n < x.size(); ++n)
     largest = std::max(largest, distance(x[n] - shaken.coordinates[n], a.x[n] - c.mesh.coordinates[n]));

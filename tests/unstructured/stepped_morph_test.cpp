@@ -77,7 +77,7 @@ Motion turn(double angle, Vec3 const& shift = {}) {
 TEST(MotionPath, ABodyKeepsItsShapeOnTheWay) {
   auto const c = sphere(12'000);
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, turn(120, {0.5, 0, 0}), {});
-  auto const u = prepared.boundary_displacement(c.mesh);
+  auto const u = prepared.boundary_displacement();
   MotionPath const path(c.mesh.coordinates, prepared.graph, prepared.boundary, u);
   auto const& known = prepared.plan.known;
   for (double const share : {0.0, 0.25, 0.7, 1.0}) {
@@ -100,7 +100,7 @@ TEST(MotionPath, WhatBendsGoesStraight) {
                             for (std::size_t n = 0; n < x.size(); ++n) u[n] = {x[n].z * x[n].z, 0, -0.5 * x[n].x};
                           }};
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion_of({rule_for({"sphere"}, bend)}), {});
-  auto const u = prepared.boundary_displacement(c.mesh);
+  auto const u = prepared.boundary_displacement();
   auto const half = MotionPath(c.mesh.coordinates, prepared.graph, prepared.boundary, u).at(0.5);
   for (std::size_t k = 0; k < u.size(); ++k) EXPECT_EQ(norm(half[k] - 0.5 * u[k]), 0);
 }
@@ -131,7 +131,7 @@ TEST(SteppedMorph, AShiftOfEverythingIsOne) {
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
   StepOptions options;
   options.steps = 3;
-  auto const u = prepared.boundary_displacement(c.mesh);
+  auto const u = prepared.boundary_displacement();
   Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options);
   for (Index n = 0; n < c.mesh.n_nodes(); ++n) EXPECT_LT(norm(x[n] - c.mesh.coordinates[n] - Vec3{1, 2, 3}), 1e-12);
 }
@@ -149,7 +149,7 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
                  rule_for({"k_max"}, translation({0, 0, 0}))});
   EXPECT_NO_THROW({
     auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
-    auto const u = prepared.boundary_displacement(c.mesh);
+    auto const u = prepared.boundary_displacement();
     StepOptions options;
     options.steps = 3;
     Coordinates const before = c.mesh.coordinates;
@@ -167,7 +167,7 @@ TEST(SteppedMorph, ABackgroundMeshOfOnesOwnIsRefusedAndTheMeshIsAsItWas) {
   Coordinates const before = c.mesh.coordinates;
   StepOptions options;
   options.plan.elements.background = std::make_shared<Background const>();
-  auto const u = prepared.boundary_displacement(c.mesh);
+  auto const u = prepared.boundary_displacement();
   EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), PlanError);
   options.plan.elements.background = {};
   options.progress = [](int step) {

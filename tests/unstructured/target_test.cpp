@@ -50,7 +50,7 @@ struct Asked {
 };
 Asked asked(Case const& c, std::string const& patch, Rule const& rule) {
   auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion_of({rule_for({patch}, rule)}), {});
-  auto const all = prepared.boundary_displacement(c.mesh);
+  auto const all = prepared.boundary_displacement();
   Asked out;
   for (Index32 const n : c.nodes_of(patch)) {
     auto const at = std::lower_bound(prepared.plan.known.begin(), prepared.plan.known.end(), n);

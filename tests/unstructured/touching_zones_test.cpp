@@ -58,7 +58,7 @@ TEST(TouchingZones, NodesThatCoincideMoveAsOne) {
         c.morph(motion_of({rule_for({"body"}, translation({0.5, 0, 0.2})), rule_for({"left", "right"}, FreeRule{})}));
     double largest = 0;
     Coordinates const u(c.mesh.n_nodes());
-    Morpher<Case::Host> const morpher(Case::Host(), m.prepared.plan, c.mesh.coordinates);
+    auto const morpher = MorpherAccess::of(Case::Host(), m.prepared.plan, c.mesh.coordinates);
     morpher.displacements({}, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(m.boundary.data(), m.boundary.size()), u);
     Case::Host().fence();
     for (auto const& [a, b] : t.pairs) {

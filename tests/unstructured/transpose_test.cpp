@@ -206,7 +206,7 @@ class UnstructuredTranspose : public ::testing::TestWithParam<Kind> {
         : c(k.mesh()), prepared(prepare(c.mesh, c.topology, c.face_patches, motion_of(k.rules), k.options)) {}
     template <class On>
     [[nodiscard]] LinearisedMorph<On> at(double factor) const {
-      std::vector<Vec3> boundary = prepared.boundary_displacement(c.mesh);
+      std::vector<Vec3> boundary = prepared.boundary_displacement();
       for (Vec3& u : boundary) u = factor * u;
       return {prepared.plan, c.mesh.coordinates, boundary};
     }

@@ -444,7 +444,7 @@ TEST(TurningBody, ThatIsNotDisplacedLeavesEveryBit) {
   auto const planned = c.morph(pitch(2));
   Coordinates x(c.mesh.n_nodes());
   std::vector<Vec3> const rest(planned.boundary.size());
-  apply_on_host(Morpher<Case::Host>(Case::Host(), planned.prepared.plan, c.mesh.coordinates), rest, x);
+  apply_on_host(MorpherAccess::of(Case::Host(), planned.prepared.plan, c.mesh.coordinates), rest, x);
   for (Index n = 0; n < x.size(); ++n) EXPECT_EQ(x[n], c.mesh.coordinates[n]) << n;
 }
 

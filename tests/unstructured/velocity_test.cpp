@@ -30,7 +30,7 @@ struct Planned {
   Planned(Case const& of, Motion const& motion, PlanOptions const& options = {})
       : c(of),
         prepared(prepare(c.mesh, c.topology, c.face_patches, motion, options)),
-        morpher(Exec(), prepared.plan, c.mesh.coordinates, {1, true}) {}
+        morpher(MorpherAccess::of(Exec(), prepared.plan, c.mesh.coordinates, {1, true})) {}
 
   [[nodiscard]] Coordinates displacement(Vectors const& boundary) const {
     Coordinates u(c.mesh.n_nodes());
@@ -165,7 +165,7 @@ TEST(UnstructuredVelocity, OfPeriodicNodesIsOne) {
 TEST(UnstructuredVelocity, NeedsItsRoom) {
   Case const c = box();
   Planned const p(c, motion_of({rule_for({"body"}, translation({0.5, 0, 0}))}));
-  Morpher<Exec> const without(Exec(), p.prepared.plan, c.mesh.coordinates);
+  auto const without = MorpherAccess::of(Exec(), p.prepared.plan, c.mesh.coordinates);
   Vectors const rest(p.prepared.plan.known.size());
   Coordinates const v(c.mesh.n_nodes());
   EXPECT_THROW(without.velocities(Exec(), view(rest), view(rest), v), ConfigError);
@@ -205,7 +205,7 @@ TEST(UnstructuredBatches, OtherLayoutsGiveTheSameField) {
     Vec3 const at = c.mesh.coordinates[n];
     x(n, 0) = float(at.x), x(n, 1) = float(at.y), x(n, 2) = float(at.z);
   }
-  Morpher<Exec> const single(Exec(), p.prepared.plan, x);
+  auto const single = MorpherAccess::of(Exec(), p.prepared.plan, x);
   single.displacements(Exec(), view(given), u);
   Exec().fence();
   Coordinates const expected = p.displacement(given);

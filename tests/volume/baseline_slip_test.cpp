@@ -197,7 +197,7 @@ TEST(BaselineSlip, VelocityIsTheDerivativeOfTheDisplacement) {
   std::vector<Vec3> rate(here.size());
   for (std::size_t n = 0; n < rate.size(); ++n) rate[n] = (0.5 / h) * (after[n] - before[n]);
   DeviceField<Memory> const x(run.mesh.coordinates);
-  Morpher<Exec> const morpher(exec, run.plan(), x, {.velocity = true});
+  auto const morpher = MorpherAccess::of(exec, run.plan(), x, {.velocity = true});
   Coordinates v(run.mesh.n_nodes()), up(run.mesh.n_nodes()), down(run.mesh.n_nodes());
   morpher.velocities(exec, upload<Memory>(here), upload<Memory>(rate), v);
   morpher.displacements(exec, upload<Memory>(after), up);

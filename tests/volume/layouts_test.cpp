@@ -86,7 +86,7 @@ class Layouts : public ::testing::Test {
 
   /// Positions and displacements of a morph with these arrays; at(f, n) reads node n of what was written to them.
   void expect_same(In const& x, In const& given, Out const& out, std::function<Vec3(Index)> const& written) const {
-    Morpher<Exec> const morpher(exec, run.plan(), x);
+    auto const morpher = MorpherAccess::of(exec, run.plan(), x);
     morpher.positions(exec, given, out);
     exec.fence();
     Index different = 0;
@@ -190,7 +190,7 @@ TEST_F(Layouts, SinglePrecisionIsRoundedOnceOnTheWayOut) {
     given(b, 2) = float(run.boundary[b].z);
     same_given(b) = {given(b, 0), given(b, 1), given(b, 2)};
   }
-  Morpher<Exec>(exec, run.plan(), x).positions(exec, same_given, expected);
+  MorpherAccess::of(exec, run.plan(), x).positions(exec, same_given, expected);
   exec.fence();
   auto const expect_rounded = [&](auto const& written) {
     Index different = 0;
@@ -203,12 +203,12 @@ TEST_F(Layouts, SinglePrecisionIsRoundedOnceOnTheWayOut) {
   Kokkos::View<float*[3], Kokkos::LayoutRight, Memory> const flat("test::x", mesh.n_nodes()),
       out("test::out", mesh.n_nodes());
   put(flat, x);
-  Morpher<Exec>(exec, run.plan(), flat).positions(exec, given, out);
+  MorpherAccess::of(exec, run.plan(), flat).positions(exec, given, out);
   exec.fence();
   expect_rounded([&](Index n) { return Vec3{out(n, 0), out(n, 1), out(n, 2)}; });
   GhostedZones<float, Kokkos::LayoutRight> const blocks(mesh, 1, [&](Index n) { return x[n]; });
   Out const in_place(exec, mesh, blocks.inner);
-  Morpher<Exec>(exec, run.plan(), in_place).positions(exec, given, in_place);
+  MorpherAccess::of(exec, run.plan(), in_place).positions(exec, given, in_place);
   exec.fence();
   expect_rounded([&](Index n) { return blocks(mesh, n); });
   EXPECT_EQ(blocks.touched(), 0);
@@ -216,13 +216,13 @@ TEST_F(Layouts, SinglePrecisionIsRoundedOnceOnTheWayOut) {
 
 TEST_F(Layouts, ExtentsThatDoNotFitAreRefusedWithBothNumbers) {
   Index const n = mesh.n_nodes();
-  Morpher<Exec> const morpher(exec, run.plan(), mesh.coordinates);
+  auto const morpher = MorpherAccess::of(exec, run.plan(), mesh.coordinates);
   for (Index const other : {n - 1, n + 1}) {
     auto const refused = [&](auto const& call) {
       expect_all_in(message_of<ConfigError>(call), {std::to_string(other) + " nodes", std::to_string(n)});
     };
     Coordinates const wrong(other);
-    refused([&] { Morpher<Exec>(exec, run.plan(), wrong); });
+    refused([&] { MorpherAccess::of(exec, run.plan(), wrong); });
     refused([&] { morpher.positions(exec, boundary, wrong); });
     refused([&] { morpher.displacements(exec, boundary, wrong); });
   }

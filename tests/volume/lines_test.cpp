@@ -241,7 +241,7 @@ TEST(Morpher, ServesManyDisplacementsOneAfterAnother) {
   Morphed const fresh = run_plan(exec, mesh, prepared.plan(), two);
   Coordinates u(mesh.n_nodes());
   DeviceField<Exec::memory_space> const x(mesh.coordinates), out(u);
-  Morpher<Exec> const morpher(exec, prepared.plan(), x);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan(), x);
   for (auto const* boundary : {&two, &one, &two}) {
     morpher.displacements(exec, upload<Exec::memory_space>(*boundary), out);
     exec.fence();
@@ -262,7 +262,7 @@ TEST(Morpher, ReadsAndWritesInterleavedArrays) {
     x(n, 2) = p.z;
   }
   Exec const exec;
-  Morpher<Exec> const morpher(exec, r.plan(), x);
+  auto const morpher = MorpherAccess::of(exec, r.plan(), x);
   morpher.positions(exec, upload<Exec::memory_space>(r.boundary), moved);
   exec.fence();
   for (Index n = 0; n < mesh.n_nodes(); ++n)
@@ -275,7 +275,7 @@ TEST(Morpher, MovesAMeshInPlace) {
   Mesh mesh = star(5, 1);
   Outcome const r = morph(mesh, motion({rule({"*"}, function_rule(waves(0.1)))}));
   DeviceField<Exec::memory_space> const x(mesh.coordinates);
-  Morpher<Exec> const morpher(exec, r.plan(), x);
+  auto const morpher = MorpherAccess::of(exec, r.plan(), x);
   morpher.positions(exec, upload<Exec::memory_space>(r.boundary), x);
   exec.fence();
   EXPECT_EQ(different_bits(x.host_copy(), r.morphed.position), 0);
@@ -305,7 +305,7 @@ TEST(Morpher, TakesSeveralFieldsAtOnceAndGivesEachWhatItGetsAlone) {
   for (int f = 0; f < n_fields; ++f)
     for (std::size_t n = 0; n < given.size(); ++n) alone[f][n] = (1 - 0.06 * f) * given[n];
   DeviceField<Memory> const x(s.mesh.coordinates);
-  Morpher<Exec> const morpher(exec, s.prepared.plan(), x, {room});
+  auto const morpher = MorpherAccess::of(exec, s.prepared.plan(), x, {room});
   std::vector<Kokkos::View<Vec3*, Memory>> boundary;
   std::vector<Coordinates> u;
   for (auto const& values : alone) {
@@ -337,7 +337,7 @@ TEST(Morpher, GridVelocityIsTheDerivativeOfTheDisplacement) {
   DeviceField<Exec::memory_space> const x(s.mesh.coordinates);
   Coordinates v(s.mesh.n_nodes());
   DeviceField<Exec::memory_space> const out(v);
-  Morpher<Exec> const morpher(exec, s.prepared.plan(), x, {1, true});
+  auto const morpher = MorpherAccess::of(exec, s.prepared.plan(), x, {1, true});
   morpher.velocities(exec, upload<Exec::memory_space>(given), upload<Exec::memory_space>(rate), out);
   exec.fence();
   Coordinates const velocity = out.host_copy();
@@ -355,7 +355,7 @@ TEST(Morpher, GridVelocityIsTheDerivativeOfTheDisplacement) {
   }
   EXPECT_GT(largest, 0.1);
   EXPECT_LT(worst, 1e-7 * largest);
-  Morpher<Exec> const without(exec, s.prepared.plan(), x);
+  auto const without = MorpherAccess::of(exec, s.prepared.plan(), x);
   EXPECT_THROW(without.velocities(exec, upload<Exec::memory_space>(given), upload<Exec::memory_space>(rate), out),
                ConfigError);
 }

@@ -218,7 +218,7 @@ TEST(TurnedNearField, HasTheVelocityOfItsDisplacement) {
   }
   Coordinates const written(s.mesh.n_nodes());
   DeviceField<Exec::memory_space> const x(s.mesh.coordinates), out(written);
-  Morpher<Exec>(exec, s.prepared.plan(), x, {1, true})
+  MorpherAccess::of(exec, s.prepared.plan(), x, {1, true})
       .velocities(exec, upload<Exec::memory_space>(given), upload<Exec::memory_space>(rate), out);
   exec.fence();
   Coordinates const velocity = out.host_copy();
@@ -250,7 +250,7 @@ TEST(TurnedNearField, TakesSeveralFieldsAtOnceWithTheSameBits) {
   auto const one = upload<Memory>(given), two = upload<Memory>(other);
   std::vector<Morpher<Exec>::In> const in{one, two};
   std::vector<Morpher<Exec>::Out> const out{u0, u1};
-  Morpher<Exec>(exec, s.prepared.plan(), x, {2, false}).displacements(exec, in, out);
+  MorpherAccess::of(exec, s.prepared.plan(), x, {2, false}).displacements(exec, in, out);
   exec.fence();
   EXPECT_EQ(different_bits(u0.host_copy(), run_plan(exec, s.mesh, s.prepared.plan(), given).displacement), 0);
   EXPECT_EQ(different_bits(u1.host_copy(), run_plan(exec, s.mesh, s.prepared.plan(), other).displacement), 0);

@@ -4,7 +4,6 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/regions.hpp>
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
@@ -17,8 +16,8 @@ namespace gridmorph {
 namespace {
 
 /// What is left of a mesh without its elements.
-Mesh without_elements(Mesh const& mesh) {
-  Mesh out;
+BoundaryMesh without_elements(Mesh const& mesh) {
+  BoundaryMesh out;
   out.dimension = mesh.dimension;
   out.zones = mesh.zones;
   for (Patch const& patch : mesh.patches)
@@ -223,14 +222,14 @@ RigidTransform Boundary::transform(int connection) const {
 
 std::vector<RigidTransform> Boundary::periodic_transforms() const {
   std::vector<RigidTransform> out;
-  for (auto const& c : connections_of(mesh_))
+  for (auto const& c : connections())
     if (c.periodic) out.push_back(transform(c.number));
   return out;
 }
 
 std::vector<RigidTransform> Boundary::periodic_transforms(std::span<int const> patches) const {
   std::vector<RigidTransform> out;
-  for (auto const& c : connections_of(mesh_))
+  for (auto const& c : connections())
     if (c.periodic && std::any_of(patches.begin(), patches.end(), [&](int p) { return touches(c.number, p); }))
       out.push_back(transform(c.number));
   return out;

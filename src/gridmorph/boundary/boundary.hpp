@@ -1,6 +1,7 @@
 // What a mesh is bounded by, as motion rules see it: the same for blocks and for elements.
 #pragma once
 
+#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/geometry/facet_surface.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gridmorph {
@@ -40,9 +42,24 @@ class Boundary {
   Boundary(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
            std::optional<double> size = {}, std::span<Patch const> regions = {});
 
-  /// Names, kinds, zones and coordinates of the mesh, without its elements and their faces; numbers are those of the
-  /// mesh.
-  [[nodiscard]] Mesh const& mesh() const { return mesh_; }
+  /// Positions, zones and patches by their numbers in the mesh, patches without their faces and lists of nodes, which
+  /// surface() has.
+  [[nodiscard]] Coordinates const& coordinates() const { return mesh_.coordinates; }
+  [[nodiscard]] std::vector<Zone> const& zones() const { return mesh_.zones; }
+  [[nodiscard]] std::vector<Patch> const& patches() const { return mesh_.patches; }
+  [[nodiscard]] int zone_of(Index node) const { return mesh_.zone_of(node); }
+  /// connections_of() the mesh.
+  [[nodiscard]] std::vector<AnyConnection> connections() const { return connections_of(mesh_); }
+  /// Numbers of the patches that selectors name; see gridmorph::select_patches().
+  [[nodiscard]] std::vector<int> select_patches(std::vector<std::string> const& selectors) const {
+    return gridmorph::select_patches(mesh_, selectors);
+  }
+  /// The name of a patch in messages.
+  [[nodiscard]] std::string describe_patch(int patch) const {
+    return gridmorph::describe_patch(mesh_, mesh_.patches[std::size_t(patch)]);
+  }
+  /// All of these, for functions that take meshes without a boundary too.
+  [[nodiscard]] BoundaryMesh const& mesh() const { return mesh_; }
   /// The size of the mesh (Mesh::size()).
   [[nodiscard]] double size() const { return size_; }
   /// The precision of the coordinates of the mesh: that of its coarsest zone.
@@ -74,7 +91,7 @@ class Boundary {
   [[nodiscard]] std::vector<RigidTransform> periodic_transforms(std::span<int const> patches) const;
 
  private:
-  Mesh mesh_;
+  BoundaryMesh mesh_;  ///< its patches have neither faces nor nodes
   double size_ = 0;
   CoordinatePrecision precision_;
   bool plane_ = false;

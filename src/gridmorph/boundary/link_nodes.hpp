@@ -7,7 +7,7 @@ namespace gridmorph {
 
 /// Calls visit(own node, donor node) for the pairs of a link or an interface, i fastest.
 template <class Connection, class Visit>
-void for_each_pair(Mesh const& mesh, Connection const& c, Visit&& visit) {
+void for_each_pair(BoundaryMesh const& mesh, Connection const& c, Visit&& visit) {
   Zone const& own = mesh.zones[c.zone];
   Zone const& donor = mesh.zones[c.donor_zone];
   for (int k = c.range.begin[2]; k < c.range.end[2]; ++k)

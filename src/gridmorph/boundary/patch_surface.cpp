@@ -11,8 +11,10 @@ namespace gridmorph {
 namespace {
 
 /// Whether direction 0 x direction 1 of a patch points away from the first layer of cells, for most of its facets.
-bool points_out_of_mesh(Mesh const& mesh, Patch const& patch) {
-  Zone const& zone = mesh.zones[patch.zone];
+bool points_out_of_mesh(Boundary const& boundary, int p) {
+  Patch const& patch = boundary.patches()[p];
+  Coordinates const& coordinates = boundary.coordinates();
+  Zone const& zone = boundary.zones()[patch.zone];
   std::array<int, 3> axes{0, 1, 2};
   for (int axis = 0; axis < 3; ++axis)
     if (patch.range.extent(axis) == 1) std::swap(axes[axis], axes[2]);
@@ -23,9 +25,9 @@ bool points_out_of_mesh(Mesh const& mesh, Patch const& patch) {
   for (int b = 0; b + 1 < patch.range.extent(axes[1]); ++b)
     for (int a = 0; a + 1 < patch.range.extent(axes[0]); ++a) {
       Index const n = zone.node(patch.range.begin) + a * stride[axes[0]] + b * stride[axes[1]];
-      Vec3 const x = mesh.coordinates[n];
-      Vec3 const normal = cross(mesh.coordinates[n + stride[axes[0]]] - x, mesh.coordinates[n + stride[axes[1]]] - x);
-      double const height = dot(normal, mesh.coordinates[n + inside] - x);
+      Vec3 const x = coordinates[n];
+      Vec3 const normal = cross(coordinates[n + stride[axes[0]]] - x, coordinates[n + stride[axes[1]]] - x);
+      double const height = dot(normal, coordinates[n + inside] - x);
       volume += height > 0 ? 1 : (height < 0 ? -1 : 0);
     }
   return volume < 0;
@@ -51,10 +53,9 @@ double largest_component(std::vector<Vec3> const& points) {
 }
 
 PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& patches) : lines(boundary.is_plane()) {
-  Mesh const& mesh = boundary.mesh();
   std::vector<Vec3> all;
   for (int const p : patches) {
-    for (Index const n : boundary.surface(p).nodes) all.push_back(mesh.coordinates[n]);
+    for (Index const n : boundary.surface(p).nodes) all.push_back(boundary.coordinates()[n]);
     gridded = gridded && boundary.surface(p).grid.has_value();
   }
   size = box_diagonal(all);
@@ -67,12 +68,12 @@ PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& pat
     grid.nodes = own.nodes;
     grid.extent = own.grid.value_or(std::array<int, 2>{int(own.nodes.size()), 1});
     for (Index const n : own.nodes) {
-      Vec3 const x = mesh.coordinates[n];
+      Vec3 const x = boundary.coordinates()[n];
       grid.vertex.push_back(numbers.find_or_add(x, int(points.size())));
       if (grid.vertex.back() == int(points.size())) points.push_back(x);
     }
     if (own.grid) {
-      grid.inward = points_out_of_mesh(mesh, mesh.patches[p]);
+      grid.inward = points_out_of_mesh(boundary, p);
     } else {
       grid.listed = own.in_file_order;
       for (GridFacet facet : own.faces) {

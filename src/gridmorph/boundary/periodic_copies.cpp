@@ -37,12 +37,11 @@ std::vector<RigidTransform> periodic_copies(Boundary const& boundary, std::vecto
 }
 
 std::vector<PatchesOfRow> patches_by_row(Boundary const& boundary, std::vector<int> const& patches) {
-  Mesh const& mesh = boundary.mesh();
-  auto const connections = connections_of(mesh);
-  DisjointSets<int> rows(mesh.zones.size());
+  auto const connections = boundary.connections();
+  DisjointSets<int> rows(boundary.zones().size());
   for (AnyConnection const& c : connections) rows.join(c.zone, c.donor_zone);
   std::map<int, PatchesOfRow> found;
-  for (int const p : patches) found[rows.root(mesh.patches[std::size_t(p)].zone)].patches.push_back(p);
+  for (int const p : patches) found[rows.root(boundary.patches()[std::size_t(p)].zone)].patches.push_back(p);
   std::vector<PatchesOfRow> out;
   for (auto& [root, row] : found) {
     std::vector<RigidTransform> transforms;

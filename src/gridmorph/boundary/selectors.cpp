@@ -19,14 +19,14 @@ constexpr std::string_view type_prefix = "type:";
 constexpr std::string_view periodic = "periodic";
 
 template <class Test>
-Selection select_if(Mesh const& mesh, Test const& test) {
+Selection select_if(BoundaryMesh const& mesh, Test const& test) {
   Selection s;
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
     if (test(mesh.patches[p])) s.patches.push_back(int(p));
   return s;
 }
 
-Selection select_type(Mesh const& mesh, std::string const& selector) {
+Selection select_type(BoundaryMesh const& mesh, std::string const& selector) {
   std::string_view const type = std::string_view(selector).substr(type_prefix.size());
   if (type == periodic) {
     Selection s;
@@ -54,7 +54,7 @@ std::vector<std::string> sorted_names(std::set<std::string> const& names) { retu
 
 }  // namespace
 
-std::vector<AnyConnection> connections_of(Mesh const& mesh) {
+std::vector<AnyConnection> connections_of(BoundaryMesh const& mesh) {
   std::vector<AnyConnection> out;
   auto const add = [&](auto const& c) {
     out.push_back({int(out.size()), c.name, c.families, c.zone, c.donor_zone, c.periodic});
@@ -85,7 +85,7 @@ bool glob_match(std::string_view pattern, std::string_view text) {
   return p == pattern.size();
 }
 
-Selection select(Mesh const& mesh, std::string const& selector) {
+Selection select(BoundaryMesh const& mesh, std::string const& selector) {
   if (selector.starts_with(type_prefix)) return select_type(mesh, selector);
 
   Selection by_family = select_if(mesh, [&](Patch const& p) { return names_family(selector, p.families); });
@@ -125,7 +125,7 @@ struct Selectable {
   std::set<std::string> families, regions, bcs, connections, types;
 };
 
-Selectable selectable(Mesh const& mesh) {
+Selectable selectable(BoundaryMesh const& mesh) {
   Selectable out;
   auto& [families, regions, bcs, connections, types] = out;
   for (Patch const& p : mesh.patches) {
@@ -144,7 +144,7 @@ Selectable selectable(Mesh const& mesh) {
 
 }  // namespace
 
-std::string describe_selectable(Mesh const& mesh) {
+std::string describe_selectable(BoundaryMesh const& mesh) {
   auto const [families, regions, bcs, connections, types] = selectable(mesh);
   std::string text;
   auto const add = [&text](char const* what, std::set<std::string> const& names) {
@@ -160,7 +160,7 @@ std::string describe_selectable(Mesh const& mesh) {
   return text.empty() ? "the mesh has no patch and no periodic interface" : "there are " + text;
 }
 
-std::string matches_nothing(Mesh const& mesh, std::string const& selector) {
+std::string matches_nothing(BoundaryMesh const& mesh, std::string const& selector) {
   auto const names = selectable(mesh);
   std::vector<std::string> known;
   for (auto const* some : {&names.families, &names.regions, &names.bcs, &names.connections, &names.types})
@@ -170,11 +170,11 @@ std::string matches_nothing(Mesh const& mesh, std::string const& selector) {
          (near.empty() ? there_are : "did you mean '" + near + "'? (" + there_are + ")");
 }
 
-std::string describe_interface(Mesh const& mesh, AnyConnection const& i) {
+std::string describe_interface(BoundaryMesh const& mesh, AnyConnection const& i) {
   return "'" + i.name + "' (zone '" + mesh.zones[i.zone].name + "' to zone '" + mesh.zones[i.donor_zone].name + "')";
 }
 
-std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors) {
+std::vector<int> select_patches(BoundaryMesh const& mesh, std::vector<std::string> const& selectors) {
   Problems problems;
   std::set<int> chosen;
   for (std::string const& selector : selectors) {

@@ -22,7 +22,7 @@ struct AnyConnection {
   std::optional<Periodic> const& periodic;
 };
 /// All connections of a mesh, which must outlive them.
-std::vector<AnyConnection> connections_of(Mesh const& mesh);
+std::vector<AnyConnection> connections_of(BoundaryMesh const& mesh);
 
 /// The patches and connections selected, by their numbers in Mesh::patches and connections_of(), ascending.
 struct Selection {
@@ -34,24 +34,24 @@ struct Selection {
 /// `type:KIND` by kind; otherwise the first of these that the selector matches: families, BC names, connection and
 /// interface names. A selector with a `/` matches BC and connection names as "zone/name" as well. Empty when nothing
 /// matches. Throws MotionError for a KIND there is not.
-Selection select(Mesh const& mesh, std::string const& selector);
+Selection select(BoundaryMesh const& mesh, std::string const& selector);
 
 /// Numbers of the patches a list of selectors names, ascending. Case-sensitive; family first, then BC name, then
 /// connection name: a selector that matches a family takes that family's patches only. "zone/name" addresses a BC or
 /// connection of one zone. Throws one MotionError for all selectors that name no patch; it lists what there is.
-std::vector<int> select_patches(Mesh const& mesh, std::vector<std::string> const& selectors);
+std::vector<int> select_patches(BoundaryMesh const& mesh, std::vector<std::string> const& selectors);
 
 /// "there are families: ...; regions: ..." of what the mesh has, for messages; BC names, connections and types where it
 /// has no families.
-std::string describe_selectable(Mesh const& mesh);
+std::string describe_selectable(BoundaryMesh const& mesh);
 
 /// Why a selector is no use: what was probably meant, and what there is.
-std::string matches_nothing(Mesh const& mesh, std::string const& selector);
+std::string matches_nothing(BoundaryMesh const& mesh, std::string const& selector);
 
 /// A list of names in quotes, for messages: "'a', 'b', 'c' and 4 more".
 std::string quote_list(std::vector<std::string> const& names, std::size_t at_most = 30);
 
 /// Family name if there is one, otherwise the connection's own name: how users know it.
-std::string describe_interface(Mesh const& mesh, AnyConnection const& interface);
+std::string describe_interface(BoundaryMesh const& mesh, AnyConnection const& interface);
 
 }  // namespace gridmorph

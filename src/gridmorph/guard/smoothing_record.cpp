@@ -48,16 +48,66 @@ std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, doubl
   return out;
 }
 
+/// Takes nodes on slip surfaces, point by point, out of those that move in space.
+void add_slides(PreparedMorph const& blocks, SmoothingMap& map) {
+  detail::BlockPoints const points(blocks);
+  auto const& surfaces = blocks.surface.slip_surfaces();
+  std::map<int, std::int32_t> number;  // of a surface, in the map
+  std::vector<std::uint8_t> done(std::size_t(map.n_nodes), 0);
+  std::vector<Index> free;
+  std::vector<Vec3> shifts;
+  auto const modes = std::size_t(map.n_modes);
+  auto const append = [&](std::vector<Vec3>& to, std::size_t at) {
+    to.insert(to.end(), map.shift.begin() + std::ptrdiff_t(at * modes),
+              map.shift.begin() + std::ptrdiff_t((at + 1) * modes));
+  };
+  for (std::size_t at = 0; at < map.node.size(); ++at) {
+    if (done[std::size_t(map.node[at])] != 0) continue;
+    std::vector<detail::PointNode> nodes;
+    points.for_each_node(map.node[at], [&](detail::PointNode const& n) { nodes.push_back(n); });
+    auto const slide = detail::sliding_point(blocks, points, nodes);
+    auto const of_frame = slide && slide->count > 0
+                              ? std::lower_bound(map.node.begin(), map.node.end(), slide->node.node)
+                              : map.node.end();
+    if (of_frame == map.node.end() || *of_frame != slide->node.node) {
+      free.push_back(map.node[at]);
+      append(shifts, at);
+      continue;
+    }
+    kernels::SlidingShift entry{points.slot(slide->node.node),
+                                slide->node.node,
+                                slide->node.matrix,
+                                {-1, -1, -1},
+                                {0, 0, 0},
+                                blocks.mesh.coordinates[slide->node.node]};
+    for (int m = 0; m < slide->count; ++m) {
+      int const surface = slide->surface[std::size_t(m)];
+      auto const [known, fresh] = number.try_emplace(surface, std::int32_t(map.surfaces.size()));
+      if (fresh) map.surfaces.push_back(surfaces[std::size_t(surface)]);
+      entry.surface[m] = known->second;
+      entry.own_offset[m] = slide->own_offset[std::size_t(m)];
+    }
+    for (detail::PointNode const& n : nodes) {
+      done[std::size_t(n.node)] = 1;
+      map.slide_nodes.push_back({n.node, std::int32_t(map.slides.size()), n.matrix});
+    }
+    append(map.slide_shift, std::size_t(of_frame - map.node.begin()));
+    map.slides.push_back(entry);
+  }
+  map.node = std::move(free);
+  map.shift = std::move(shifts);
+}
+
+std::size_t count_boundary_nodes(MorphPlan const& plan) {
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan);
+  return blocks ? blocks->plan().boundary_nodes.size() : PlanAccess::elements(plan)->plan.known.size();
+}
+
 }  // namespace
 
-SmoothingRecord::SmoothingRecord(MorphPlan const& plan)
-    : blocks_(PlanAccess::blocks(plan)), elements_(PlanAccess::elements(plan)) {}
-SmoothingRecord::SmoothingRecord(PreparedMorph const& prepared) : blocks_(&prepared) {}
-
 void SmoothingRecord::add(std::span<Vec3 const> boundary, Coordinates const& plain, Coordinates const& guarded) {
-  std::size_t const n_boundary = blocks_ ? blocks_->plan().boundary_nodes.size() : elements_->plan.known.size();
-  Index const n_nodes = blocks_ ? blocks_->plan().n_nodes : elements_->plan.n_nodes;
-  require_boundary_size(who, boundary.size(), n_boundary, "MorphPlan::boundary_nodes()");
+  Index const n_nodes = plan_.n_nodes();
+  require_boundary_size(who, boundary.size(), count_boundary_nodes(plan_), "MorphPlan::boundary_nodes()");
   if (plain.size() != n_nodes || guarded.size() != n_nodes)
     throw ConfigError(std::string(who) + ": " + std::to_string(plain.size()) + " and " +
                       std::to_string(guarded.size()) + " nodes, and the plan's mesh has " + std::to_string(n_nodes));
@@ -73,8 +123,8 @@ void SmoothingRecord::add(std::span<Vec3 const> boundary, Coordinates const& pla
 std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& options) const {
   auto made = std::make_shared<SmoothingMap>();
   SmoothingMap& out = *made;
-  out.n_nodes = blocks_ ? blocks_->plan().n_nodes : elements_->plan.n_nodes;
-  out.n_boundary = Index(blocks_ ? blocks_->plan().boundary_nodes.size() : elements_->plan.known.size());
+  out.n_nodes = plan_.n_nodes();
+  out.n_boundary = Index(count_boundary_nodes(plan_));
   std::vector<std::vector<Vec3> const*> u;
   for (Recorded const& r : recorded_) {
     u.push_back(&r.boundary);
@@ -115,58 +165,8 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
       out.misfit = std::max(out.misfit, norm(left));
     }
   }
-  if (blocks_) add_slides(out);
+  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) add_slides(*blocks, out);
   return made;
-}
-
-/// Takes nodes on slip surfaces, point by point, out of those that move in space.
-void SmoothingRecord::add_slides(SmoothingMap& map) const {
-  detail::BlockPoints const points(*blocks_);
-  auto const& surfaces = blocks_->surface.slip_surfaces();
-  std::map<int, std::int32_t> number;  // of a surface, in the map
-  std::vector<std::uint8_t> done(std::size_t(map.n_nodes), 0);
-  std::vector<Index> free;
-  std::vector<Vec3> shifts;
-  auto const modes = std::size_t(map.n_modes);
-  auto const append = [&](std::vector<Vec3>& to, std::size_t at) {
-    to.insert(to.end(), map.shift.begin() + std::ptrdiff_t(at * modes),
-              map.shift.begin() + std::ptrdiff_t((at + 1) * modes));
-  };
-  for (std::size_t at = 0; at < map.node.size(); ++at) {
-    if (done[std::size_t(map.node[at])] != 0) continue;
-    std::vector<detail::PointNode> nodes;
-    points.for_each_node(map.node[at], [&](detail::PointNode const& n) { nodes.push_back(n); });
-    auto const slide = detail::sliding_point(*blocks_, points, nodes);
-    auto const of_frame = slide && slide->count > 0
-                              ? std::lower_bound(map.node.begin(), map.node.end(), slide->node.node)
-                              : map.node.end();
-    if (of_frame == map.node.end() || *of_frame != slide->node.node) {
-      free.push_back(map.node[at]);
-      append(shifts, at);
-      continue;
-    }
-    kernels::SlidingShift entry{points.slot(slide->node.node),
-                                slide->node.node,
-                                slide->node.matrix,
-                                {-1, -1, -1},
-                                {0, 0, 0},
-                                blocks_->mesh.coordinates[slide->node.node]};
-    for (int m = 0; m < slide->count; ++m) {
-      int const surface = slide->surface[std::size_t(m)];
-      auto const [known, fresh] = number.try_emplace(surface, std::int32_t(map.surfaces.size()));
-      if (fresh) map.surfaces.push_back(surfaces[std::size_t(surface)]);
-      entry.surface[m] = known->second;
-      entry.own_offset[m] = slide->own_offset[std::size_t(m)];
-    }
-    for (detail::PointNode const& n : nodes) {
-      done[std::size_t(n.node)] = 1;
-      map.slide_nodes.push_back({n.node, std::int32_t(map.slides.size()), n.matrix});
-    }
-    append(map.slide_shift, std::size_t(of_frame - map.node.begin()));
-    map.slides.push_back(entry);
-  }
-  map.node = std::move(free);
-  map.shift = std::move(shifts);
 }
 
 namespace {

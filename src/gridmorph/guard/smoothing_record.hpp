@@ -10,9 +10,7 @@
 
 namespace gridmorph {
 
-struct PreparedMorph;         ///< plan/prepare.hpp
-struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
-struct SmoothingMap;          ///< plan/smoothing_map.hpp
+struct SmoothingMap;  ///< plan/smoothing_map.hpp
 
 struct FreezeOptions {
   /// Directions of the boundary's displacement along which those recorded differ by less than this share of the largest
@@ -36,10 +34,8 @@ class SmoothingRecord {
  public:
   static constexpr int most = 32;  ///< displacements
 
-  /// The plan and what it refers to must outlive the record.
-  explicit SmoothingRecord(MorphPlan const& plan);
-  explicit SmoothingRecord(PreparedMorph const& prepared);
-  explicit SmoothingRecord(PreparedUnstructured const& prepared) : elements_(&prepared) {}
+  /// The record keeps the plan.
+  explicit SmoothingRecord(MorphPlan plan) : plan_(std::move(plan)) {}
 
   /// boundary: as for a Morpher; plain: what it makes; guarded: what a guard made of that. Throws ConfigError for other
   /// sizes, and for more than `most`. Memory: 24 bytes per boundary node, 32 per node that the guard moved.
@@ -56,10 +52,7 @@ class SmoothingRecord {
     std::vector<std::pair<Index, Vec3>> shift;  ///< ascending by node
   };
 
-  void add_slides(SmoothingMap& map) const;
-
-  PreparedMorph const* blocks_ = nullptr;
-  PreparedUnstructured const* elements_ = nullptr;
+  MorphPlan plan_;
   std::vector<Recorded> recorded_;
 };
 

@@ -3,6 +3,7 @@
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/given_slip.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -38,7 +39,7 @@ Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topolog
     auto const step_plan =
         prepare({}, now, topology, face_patches, prepared.graph, prepared.boundary, options.plan, given);
     Coordinates moved(mesh.n_nodes());
-    apply_on_host(Morpher<Exec>(Exec(), step_plan.plan, now.coordinates), given, moved);
+    apply_on_host(MorpherAccess::of(Exec(), step_plan.plan, now.coordinates), given, moved);
     // Against this step, not the baseline: smoothing undoes what the motion asks for by now, and was seen to leave more
     // bad elements.
     (void)relax_bad_elements(now, topology, step_plan, moved, {.signs = signs});

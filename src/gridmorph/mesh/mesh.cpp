@@ -115,15 +115,15 @@ int Mesh::zone_of_element(Index element) const {
   return int(after - zones.begin()) - 1;
 }
 
-int Mesh::zone_of(Index node) const {
+int BoundaryMesh::zone_of(Index node) const {
   auto const after =
       std::upper_bound(zones.begin(), zones.end(), node, [](Index n, Zone const& z) { return n < z.first_node; });
   return int(after - zones.begin()) - 1;
 }
 
-double Mesh::size() const { return extent_of(coordinates).size(); }
+double BoundaryMesh::size() const { return extent_of(coordinates).size(); }
 
-std::string describe_node(Mesh const& mesh, Index node) {
+std::string describe_node(BoundaryMesh const& mesh, Index node) {
   int const z = mesh.zone_of(node);
   if (!mesh.zones[z].is_block())
     return "zone '" + mesh.zones[z].name + "' node " + std::to_string(node_number_in_file(mesh, node));
@@ -137,7 +137,7 @@ std::string_view face_name(int axis, int side) {
   return names[2 * axis + side];
 }
 
-std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range) {
+std::string describe_range(BoundaryMesh const& mesh, int zone, IndexRange const& range) {
   Zone const& z = mesh.zones[zone];
   std::string text = "zone '" + z.name + "' ";
   for (int a = 0; a < 3; ++a)
@@ -148,7 +148,7 @@ std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range) 
   return text + to_string(range);
 }
 
-std::string describe_patch(Mesh const& mesh, Patch const& patch) {
+std::string describe_patch(BoundaryMesh const& mesh, Patch const& patch) {
   if (patch.kind == PatchKind::region)
     return "'" + patch.name + "' (region, zone '" + mesh.zones[patch.zone].name + "')";
   std::string text = "'" + (patch.families.empty() ? patch.name : patch.families.front()) + "'";

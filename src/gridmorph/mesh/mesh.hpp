@@ -143,30 +143,40 @@ struct Coordinates {
   }
 };
 
-struct Mesh {
+/// A mesh without its cells: zones and their nodes, patches and connections, as rules and messages see them.
+struct BoundaryMesh {
   /// The dimension of the cells in the file, 3 or 2. Blocks of a 2-D mesh are extruded by one cell, and writers put
   /// back plane k = 0 only; elements of a 2-D mesh are surfaces.
   int dimension = 3;
   std::vector<Zone> zones;
-  Elements elements;                      ///< of all zones; of a mesh of blocks alone none
-  Polyhedra polyhedra;                    ///< among them
   std::vector<Patch> patches;             ///< of all zones, in file order
   std::vector<Interface1to1> interfaces;  ///< of blocks, in file order
   std::vector<Connection> connections;    ///< of elements, in file order
   std::vector<std::string> families;      ///< Family_t names
-  std::vector<Subset> subsets;            ///< of elements, in file order; writers leave them to the file
   Coordinates coordinates;                ///< all three components, z = 0 where a file of elements has two
   std::string source;                     ///< file name or what made it, for messages
+  int first_number = 1;                   ///< of nodes of elements in messages: 1 in CGNS, 0 in SU2 files
+  FileOrder file_order;  ///< set by reorder() and leave_out_unused_nodes(); empty where nothing is to be said
+
+  [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().size(); }
+  /// The zone that holds a node.
+  [[nodiscard]] int zone_of(Index node) const;
+  /// Diagonal of the bounding box: the size that relative tolerances refer to.
+  [[nodiscard]] double size() const;
+};
+
+/// A mesh as its file has it.
+struct Mesh : BoundaryMesh {
+  Elements elements;            ///< of all zones; of a mesh of blocks alone none
+  Polyhedra polyhedra;          ///< among them
+  std::vector<Subset> subsets;  ///< of elements, in file order; writers leave them to the file
   /// How the file is stored where the file itself does not say so (PLOT3D: "unformatted, little-endian, ..."), for the
   /// writer; empty otherwise.
   std::string file_variant;
   std::vector<std::string> notes;  ///< what the reader skipped or assumed, for `inspect` and logs
-  int first_number = 1;            ///< of nodes of elements in messages: 1 in CGNS, 0 in SU2 files
-  FileOrder file_order;            ///< set by reorder() and leave_out_unused_nodes(); empty where nothing is to be said
 
   /// Whether all cells are those of blocks. Blocks beside zones of elements have theirs among these.
   [[nodiscard]] bool is_structured() const;
-  [[nodiscard]] Index n_nodes() const { return zones.empty() ? 0 : zones.back().first_node + zones.back().size(); }
   /// The number of cells of all blocks.
   [[nodiscard]] Index n_cells() const;
   [[nodiscard]] Index n_elements() const { return elements.size(); }
@@ -176,21 +186,18 @@ struct Mesh {
   int add_zone(std::string name, Index n_nodes);
   /// Appends an element of the last zone.
   void add_element(ElementType type, std::span<Index32 const> nodes);
-  /// The zone that holds a node, or an element.
-  [[nodiscard]] int zone_of(Index node) const;
+  /// The zone that holds an element.
   [[nodiscard]] int zone_of_element(Index element) const;
-  /// Diagonal of the bounding box: the size that relative tolerances refer to.
-  [[nodiscard]] double size() const;
 };
 
 /// The name of a node in messages: "zone 'Zone 1' node (i 3, j 1, k 7)", 1-based as users count; of elements "zone
 /// 'Fluid' node 17", as the file counts.
-std::string describe_node(Mesh const& mesh, Index node);
+std::string describe_node(BoundaryMesh const& mesh, Index node);
 /// The name of a range of nodes in messages: "zone 'Zone 1' i_min [1:1, 1:33, 1:9]".
-std::string describe_range(Mesh const& mesh, int zone, IndexRange const& range);
+std::string describe_range(BoundaryMesh const& mesh, int zone, IndexRange const& range);
 /// The name of a face: "i_min" ... "k_max" for axis 0..2 and side 0 or 1.
 std::string_view face_name(int axis, int side);
 /// Patch name for messages: "'blade' (BC 'blade_ss', zone 'Zone 1')".
-std::string describe_patch(Mesh const& mesh, Patch const& patch);
+std::string describe_patch(BoundaryMesh const& mesh, Patch const& patch);
 
 }  // namespace gridmorph

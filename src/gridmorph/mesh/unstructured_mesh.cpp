@@ -100,7 +100,7 @@ std::array<Index, n_element_types> count_types(Mesh const& mesh, int zone) {
   return count;
 }
 
-Index node_number_in_file(Mesh const& mesh, Index node) {
+Index node_number_in_file(BoundaryMesh const& mesh, Index node) {
   auto const& order = mesh.file_order.node;
   Index const place = order.empty() ? node : order[std::size_t(node)];
   return place - mesh.zones[std::size_t(mesh.zone_of(node))].first_node + mesh.first_number;

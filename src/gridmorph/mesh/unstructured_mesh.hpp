@@ -41,7 +41,7 @@ std::array<Index, n_element_types> count_types(Mesh const& mesh, int zone = -1);
 /// (i 3, j 1, k 7)".
 std::string describe_element(Mesh const& mesh, Index element);
 /// The numbers by which the file knows a node and an element of its zone.
-Index node_number_in_file(Mesh const& mesh, Index node);
+Index node_number_in_file(BoundaryMesh const& mesh, Index node);
 Index number_in_file(Mesh const& mesh, Index element);
 
 /// Checks what readers and generators must guarantee: node and element ranges, node numbers inside their zone, as many

@@ -315,7 +315,7 @@ std::vector<Index32> coincident_nodes(Mesh const& mesh) {
   return sets.roots();
 }
 
-std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh) {
+std::vector<std::uint8_t> periodic_nodes(BoundaryMesh const& mesh) {
   std::vector<std::uint8_t> paired(std::size_t(mesh.n_nodes()), 0);
   for (auto const& c : mesh.connections)
     if (c.periodic)

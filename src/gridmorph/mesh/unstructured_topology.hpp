@@ -87,7 +87,7 @@ BoundaryFacePatches find_face_patches(Mesh const& mesh, UnstructuredTopology con
 std::vector<Index32> coincident_nodes(Mesh const& mesh);
 
 /// Marks of nodes, (n_nodes): 1 for those that a periodic connection pairs.
-std::vector<std::uint8_t> periodic_nodes(Mesh const& mesh);
+std::vector<std::uint8_t> periodic_nodes(BoundaryMesh const& mesh);
 
 /// For each of `points` the nearest of `donors` within `tolerance` (the first of equals), or -1. Both are node numbers;
 /// `periodic`: moves the points onto the donors first. n log n.

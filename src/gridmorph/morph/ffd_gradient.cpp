@@ -18,7 +18,7 @@ constexpr char const* who_ffd = "gridmorph::ffd_gradient";
 
 /// A plan as rules see it.
 struct Asked {
-  Mesh const& mesh;
+  BoundaryMesh const& mesh;
   BoundaryRequests const& boundary;
   BoundaryMotion const& motion;
   std::vector<Mat3> const& rotations;

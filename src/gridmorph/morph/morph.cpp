@@ -52,9 +52,7 @@ struct MorphPlan::State {
 
 std::vector<Vec3> const& MorphPlan::State::displacement_by_rules() const {
   std::lock_guard const lock(evaluating);
-  if (!displacement)
-    displacement = blocks ? blocks->boundary_displacement()
-                          : elements->boundary_displacement(elements->boundary.motion->boundary().mesh());
+  if (!displacement) displacement = blocks ? blocks->boundary_displacement() : elements->boundary_displacement();
   return *displacement;
 }
 
@@ -191,12 +189,12 @@ std::vector<Index> MorphPlan::boundary_nodes() const {
 std::vector<BoundaryPlace> MorphPlan::boundary_places() const {
   auto const& blocks = state_->blocks;
   auto const& elements = state_->elements;
-  Mesh const& mesh = blocks ? blocks->mesh : elements->boundary.motion->boundary().mesh();
+  Boundary const& boundary = rules().boundary();
   auto const& requests = blocks ? blocks->planned.boundary.requests : elements->boundary.requests.requests;
   std::vector<BoundaryPlace> out;
   for (auto const& r : requests) {
-    int const z = mesh.zone_of(r.node);
-    Zone const& zone = mesh.zones[std::size_t(z)];
+    int const z = boundary.zone_of(r.node);
+    Zone const& zone = boundary.zones()[std::size_t(z)];
     Index3 const index = zone.is_block() ? zone.index(r.node) : Index3{int(r.node - zone.first_node), 0, 0};
     out.push_back({r.boundary_node, r.patch, z, index, {}});
     if (r.rotation >= 0) out.back().rotation = blocks->plan().rotations[std::size_t(r.rotation)];

@@ -13,6 +13,7 @@
 namespace gridmorph {
 
 class MorphPlan;
+struct MorpherAccess;
 struct Plan;
 struct SmoothingMap;
 struct UnstructuredPlan;
@@ -51,10 +52,6 @@ class Morpher {
 
   /// The arrays of the baseline are not copied: positions() reads them again.
   Morpher(ExecutionSpace const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options = {});
-  /// For the library: the plan of one kind.
-  Morpher(ExecutionSpace const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options = {});
-  Morpher(ExecutionSpace const& exec, UnstructuredPlan const& plan, In const& baseline,
-          MorpherOptions const& options = {});
 
   /// moved(n) = x(n) + u(n) for every node, bit for bit x(n) where it does not move. `moved` may be the baseline
   /// itself, which is gone then. Cost per node: 24 bytes read, 24 written, 8 read per line parameter.
@@ -90,7 +87,12 @@ class Morpher {
   [[nodiscard]] In background_displacements(std::size_t part = 0) const;
 
  private:
+  friend struct MorpherAccess;
   struct State;
+
+  Morpher(ExecutionSpace const& exec, Plan const& plan, In const& baseline, MorpherOptions const& options);
+  Morpher(ExecutionSpace const& exec, UnstructuredPlan const& plan, In const& baseline, MorpherOptions const& options);
+
   std::shared_ptr<State const> state_;
 };
 

@@ -3,7 +3,7 @@
 #include <gridmorph/kernels/cell_quality.hpp>
 #include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 
 #include <algorithm>
@@ -78,8 +78,7 @@ Coordinates Predictor::morphed(Plan const& plan, std::span<Vec3 const> boundary)
   Coordinates out(baseline.size());
   std::vector<Vec3> const given = planner_.displacement(plan, boundary);
   host_.visit([&](auto const& exec) {
-    using Exec = std::remove_cvref_t<decltype(exec)>;
-    Morpher<Exec> const morpher(exec, with_common, baseline);
+    auto const morpher = MorpherAccess::of(exec, with_common, baseline);
     morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(given.data(), given.size()), out);
     compat::fence(exec, "gridmorph::predict (read by the host)");
   });

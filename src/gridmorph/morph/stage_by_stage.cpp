@@ -1,4 +1,5 @@
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/morph/stage_by_stage.hpp>
 
 #include <vector>
@@ -13,7 +14,7 @@ void morph_stage_by_stage(Plan const& plan, Coordinates const& baseline, std::sp
     given.resize(part.boundary_slots.size(), Vec3{0, 0, 0});
     Coordinates positions(baseline.size());
     for (Index n = 0; n < baseline.size(); ++n) positions.set(n, baseline[n]);
-    apply_on_host(Morpher<Kokkos::DefaultHostExecutionSpace>({}, part, baseline), given, positions);
+    apply_on_host(MorpherAccess::of(Kokkos::DefaultHostExecutionSpace(), part, baseline), given, positions);
     visit(done, positions);
   }
 }

@@ -30,7 +30,7 @@ AttachedMotion::AttachedMotion(Boundary const& boundary, std::vector<int> const&
   for (int const p : patches) {
     std::vector<Vec3> points;
     for (Index const n : boundary.surface(p).nodes) {
-      Vec3 const x = boundary.mesh().coordinates[n];
+      Vec3 const x = boundary.coordinates()[n];
       double const d = rule.near ? distance(x, rule.near->first) : 0;
       nearest = std::min(nearest, d);
       if (!rule.near || d <= rule.near->second) points.push_back(x);

@@ -20,8 +20,8 @@ namespace {
 /// against what the connection says: those that no rule names get the rule `free` instead, after all others.
 Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vector<std::string>& notes) {
   if (motion.strict) return motion;
-  Mesh const& mesh = boundary.mesh();
-  std::vector<std::uint8_t> named(mesh.patches.size(), 0);
+  BoundaryMesh const& mesh = boundary.mesh();
+  std::vector<std::uint8_t> named(boundary.patches().size(), 0);
   for (auto const& rule : motion.rules)
     for (auto const& selector : rule.patches) {
       if (selector == "type:periodic") continue;
@@ -33,12 +33,12 @@ Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vecto
     }
   std::vector<std::uint8_t> const paired = periodic_nodes(mesh);
   std::vector<std::string> free;
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+  for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
     auto const& nodes = boundary.surface(int(p)).nodes;
-    if (named[p] != 0 || mesh.patches[p].kind != PatchKind::other || nodes.empty()) continue;
+    if (named[p] != 0 || boundary.patches()[p].kind != PatchKind::other || nodes.empty()) continue;
     if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })) continue;
-    auto const& families = mesh.patches[p].families;
-    free.push_back(families.empty() ? mesh.patches[p].name : families.front());
+    auto const& families = boundary.patches()[p].families;
+    free.push_back(families.empty() ? boundary.patches()[p].name : families.front());
   }
   if (free.empty()) return motion;
   notes.push_back("patches " + quote_list(free) + ": periodic, and no rule names them; default: free");
@@ -59,12 +59,12 @@ bool fits_connections(Rule const& rule) {
 class RulesOfConnections {
  public:
   RulesOfConnections(Boundary const& boundary, ResolvedMotion& motion)
-      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), is_side_(mesh_.patches.size(), 0) {
+      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), is_side_(boundary_.patches().size(), 0) {
     std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       auto const& nodes = boundary_.surface(int(p)).nodes;
       is_side_[p] =
-          !nodes.empty() && mesh_.patches[p].kind != PatchKind::region &&
+          !nodes.empty() && boundary_.patches()[p].kind != PatchKind::region &&
                   std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })
               ? 1
               : 0;
@@ -154,7 +154,7 @@ class RulesOfConnections {
   /// Whether a patch has no kind that tells what it is. Thin inlets and walls, all of whose nodes lie on the edges of
   /// sides, have one.
   [[nodiscard]] bool has_no_kind(std::size_t p) const {
-    return mesh_.patches[p].kind == PatchKind::other || mesh_.patches[p].kind == PatchKind::connection;
+    return boundary_.patches()[p].kind == PatchKind::other || boundary_.patches()[p].kind == PatchKind::connection;
   }
 
   /// Patches all of whose nodes connections now have the rule for.
@@ -169,13 +169,13 @@ class RulesOfConnections {
           }))
         continue;
       own.rule = int(motion_.rules.size());
-      names.push_back(mesh_.patches[p].name);
+      names.push_back(boundary_.patches()[p].name);
     }
     if (!names.empty()) motion_.rules.push_back({std::move(names), FreeRule{}, 0, "default of periodic patches"});
   }
 
   Boundary const& boundary_;
-  Mesh const& mesh_;
+  BoundaryMesh const& mesh_;
   ResolvedMotion& motion_;
   std::vector<std::uint8_t> is_side_;
   std::vector<std::pair<std::size_t, int>> given_;  ///< connections and the rules that they have from patches
@@ -202,7 +202,7 @@ class Finder {
   BoundaryConditions run(Motion const& motion, std::vector<std::string> const& walls, Displacements displacements) {
     std::vector<Patch> const regions = regions_of_elements(mesh_, located(motion), out_.notes);
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_, regions);
-    patches_ = boundary->mesh().patches;
+    patches_ = boundary->patches();
     ResolvedMotion const resolved = resolve_on(*boundary, motion, out_.notes);
     out_.notes.insert(out_.notes.end(), resolved.notes.begin(), resolved.notes.end());
     out_.motion = std::make_shared<BoundaryMotion const>(boundary, resolved);
@@ -503,7 +503,7 @@ std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& 
 namespace {
 
 std::vector<Vec3> evaluate_copies(BoundaryConditions const& boundary, BoundaryMotion const& motion) {
-  Mesh const& mesh = boundary.motion->boundary().mesh();
+  BoundaryMesh const& mesh = boundary.motion->boundary().mesh();
   std::vector<Vec3> out = evaluate(mesh, boundary.requests, motion, {});
   require_equal_copies(mesh, boundary.requests, motion, out);
   return out;

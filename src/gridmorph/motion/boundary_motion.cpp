@@ -1,6 +1,5 @@
 #include <gridmorph/motion/boundary_motion.hpp>
 
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -106,7 +105,7 @@ struct BoundaryMotion::Impl {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (blades_of(rules[r].rule) == nullptr) continue;
       try {
-        row_of_rule[r] = &row(select_patches(boundary->mesh(), *blades_of(rules[r].rule)));
+        row_of_rule[r] = &row(boundary->select_patches(*blades_of(rules[r].rule)));
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -162,13 +161,13 @@ struct BoundaryMotion::Impl {
       auto const* rule = std::get_if<ExtendRule>(&rules[r].rule);
       if (rule == nullptr) continue;
       try {
-        std::vector<int> const named = select_patches(boundary->mesh(), rule->of);
+        std::vector<int> const named = boundary->select_patches(rule->of);
         require_direct(named);
         std::map<int, MovedWall const*> walls;
         for (int const p : named) {
           int const w = motion.patch[std::size_t(p)].rule;
           if (std::holds_alternative<SectionsRule>(rules[std::size_t(w)].rule))
-            throw MotionError(label(int(r)) + ": of: " + describe_patch(boundary->mesh(), boundary->mesh().patches[p]) +
+            throw MotionError(label(int(r)) + ": of: " + boundary->describe_patch(p) +
                               " has the rule 'sections', which is about blades and not about the walls they stand on");
           walls[w] = &moved_wall(w, label(int(r)));
         }
@@ -203,7 +202,7 @@ struct BoundaryMotion::Impl {
     };
     DisjointSets<int> together(rules.size());  // carrying rules and those of their walls
     each<CarryRule>([&](int r, CarryRule const& rule) {
-      std::vector<int> const walls = select_patches(boundary->mesh(), rule.of);
+      std::vector<int> const walls = boundary->select_patches(rule.of);
       require_direct(walls);
       carried.try_emplace(r, *boundary, motion, patches_of(r), rule, walls, displacement, label(r));
       for (int const p : walls) together.join(r, motion.patch[std::size_t(p)].rule);
@@ -256,7 +255,7 @@ struct BoundaryMotion::Impl {
       evaluate(motion.patch[std::size_t(p)].rule, points, out);
     };
     auto const walls_of = [&](std::vector<std::string> const& of) {
-      std::vector<int> walls = select_patches(boundary->mesh(), of);
+      std::vector<int> walls = boundary->select_patches(of);
       require_direct(walls);
       return walls;
     };
@@ -279,7 +278,7 @@ struct BoundaryMotion::Impl {
   [[nodiscard]] WakeMotion::Beside beside_wake_of(std::vector<int> const& blades) const {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (!std::holds_alternative<FollowRule>(rules[r].rule)) continue;
-      std::vector<int> const followed = select_patches(boundary->mesh(), *blades_of(rules[r].rule));
+      std::vector<int> const followed = boundary->select_patches(*blades_of(rules[r].rule));
       if (std::find_first_of(blades.begin(), blades.end(), followed.begin(), followed.end()) != blades.end())
         return [row = row_of_rule[r]](Vec3 const& x) { return row->follow(x); };
     }
@@ -287,10 +286,9 @@ struct BoundaryMotion::Impl {
   }
 
   void require_direct(std::vector<int> const& patches) const {
-    Mesh const& mesh = boundary->mesh();
     for (int p : patches)
       if (Rule const& rule = motion.patch_rule(p); !is_direct(rule))
-        throw MotionError("of: patch " + describe_patch(mesh, mesh.patches[p]) + " has the rule '" +
+        throw MotionError("of: patch " + boundary->describe_patch(p) + " has the rule '" +
                           std::string(rule_name(rule)) +
                           "', whose displacement is not known beforehand; give "
                           "it fixed, rigid, formula, field, sections, target, inflate or ffd");

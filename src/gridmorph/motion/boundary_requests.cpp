@@ -21,7 +21,7 @@ namespace {
 using Request = BoundaryRequests::Request;
 
 /// The name of what asks, as users know it: by its family where it has one.
-std::string requester(Mesh const& mesh, Request const& r) {
+std::string requester(BoundaryMesh const& mesh, Request const& r) {
   auto const named = [](std::string const& name, std::vector<std::string> const& families) {
     return "'" + (families.empty() ? name : families.front()) + "'";
   };
@@ -35,7 +35,7 @@ std::string requester(Mesh const& mesh, Request const& r) {
 
 class Evaluation {
  public:
-  Evaluation(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+  Evaluation(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
              std::vector<Mat3> const& rotations)
       : mesh_(mesh),
         boundary_(boundary),
@@ -136,7 +136,7 @@ class Evaluation {
            mesh_.zone_of(own.node) != mesh_.zone_of(other.node);
   }
 
-  Mesh const& mesh_;
+  BoundaryMesh const& mesh_;
   BoundaryRequests const& boundary_;
   std::vector<Mat3> const& rotations_;
   BoundaryMotion const& rules_;
@@ -160,7 +160,7 @@ namespace {
 
 /// Refuses what leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out
 /// of its plane squeezed.
-void require_in_plane(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+void require_in_plane(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                       std::vector<Vec3> const& displacement) {
   Boundary const& surfaces = motion.boundary();
   if (!surfaces.is_plane()) return;
@@ -190,7 +190,7 @@ void require_in_plane(Mesh const& mesh, BoundaryRequests const& boundary, Bounda
 
 }  // namespace
 
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+std::vector<Vec3> evaluate(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations) {
   auto const& requests = boundary.requests;
   Evaluation evaluation(mesh, boundary, motion, rotations);
@@ -209,7 +209,7 @@ std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, B
   return out;
 }
 
-void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+void require_equal_copies(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                           std::vector<Vec3> const& displacement) {
   ResolvedMotion const& resolved = motion.motion();
   double const size = motion.boundary().size();
@@ -249,7 +249,8 @@ void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, Bo
   problems.throw_if_any<MotionError>();
 }
 
-std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion) {
+std::vector<Index> deciding_requests(BoundaryMesh const& mesh, BoundaryRequests const& boundary,
+                                     BoundaryMotion const& motion) {
   std::vector<Mat3> const none;
   Evaluation evaluation(mesh, boundary, motion, none);
   for (std::size_t n = 0; n < boundary.requests.size(); ++n) evaluation.take(n, {});  // ranks decide, not values

@@ -32,17 +32,18 @@ struct BoundaryRequests {
 /// Displacement of every boundary node of the plan, in its frame. Throws MotionError that lists every pair of patches
 /// whose displacements disagree on their common nodes by more than the conformity tolerance (place, size). `mesh`: that
 /// the numbers of nodes, patches and interfaces mean. Cost O(requests) evaluations.
-std::vector<Vec3> evaluate(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+std::vector<Vec3> evaluate(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations);
 
 /// Meshes of elements, in which both nodes of a periodic connection may have requests of their own: throws MotionError
 /// where one rule gives them displacements that are no copies of one another, by more than evaluate() lets rules
 /// differ. Cost O(requests).
-void require_equal_copies(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+void require_equal_copies(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
                           std::vector<Vec3> const& displacement);
 
 /// The request that gives every boundary node its value there, by its number; -1: none. Cost O(requests); no rule is
 /// evaluated.
-std::vector<Index> deciding_requests(Mesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion);
+std::vector<Index> deciding_requests(BoundaryMesh const& mesh, BoundaryRequests const& boundary,
+                                     BoundaryMotion const& motion);
 
 }  // namespace gridmorph

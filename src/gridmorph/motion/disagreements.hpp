@@ -34,7 +34,8 @@ class Disagreements {
   /// The messages, those about the most nodes first. `points_of(name)`: the nodes of what has that name, patch by
   /// patch, from which is told what rule it could have.
   template <class PointsOf>
-  [[nodiscard]] std::vector<std::string> messages(Mesh const& mesh, Axis const& axis, PointsOf const& points_of) const {
+  [[nodiscard]] std::vector<std::string> messages(BoundaryMesh const& mesh, Axis const& axis,
+                                                  PointsOf const& points_of) const {
     std::vector<std::string> out;
     for (auto const* one : largest()) {
       std::string text = statement(mesh, *one);
@@ -61,8 +62,8 @@ class Disagreements {
   using Pair = std::pair<std::pair<std::string, std::string> const, Found>;
 
   [[nodiscard]] std::vector<Pair const*> largest() const;
-  [[nodiscard]] static std::string statement(Mesh const& mesh, Pair const& pair);
-  [[nodiscard]] static std::string missing_rule(Mesh const& mesh, Axis const& axis, std::string const& name,
+  [[nodiscard]] static std::string statement(BoundaryMesh const& mesh, Pair const& pair);
+  [[nodiscard]] static std::string missing_rule(BoundaryMesh const& mesh, Axis const& axis, std::string const& name,
                                                 std::vector<std::vector<Vec3>> const& patches);
 
   std::map<std::pair<std::string, std::string>, Found> found_;

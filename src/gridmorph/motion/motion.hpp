@@ -258,6 +258,6 @@ struct ResolvedMotion {
 /// the same patch are an error, and so is a selector that matches nothing (the message lists what there is). A rule on
 /// one side of a periodic interface holds for its other side, which files store as an interface of its own. All
 /// problems are reported in one MotionError. Cost O(patches + interfaces^2), nothing per node.
-ResolvedMotion resolve(Mesh const& mesh, Motion const& motion);
+ResolvedMotion resolve(BoundaryMesh const& mesh, Motion const& motion);
 
 }  // namespace gridmorph

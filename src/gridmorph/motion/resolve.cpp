@@ -33,7 +33,7 @@ bool is_direct(Rule const& rule) {
 
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
 /// only if there is no other.
-int find_partner(Mesh const& mesh, int interface) {
+int find_partner(BoundaryMesh const& mesh, int interface) {
   Interface1to1 const& own = mesh.interfaces[interface];
   IndexRange const donor = own.to_donor(own.range);
   for (std::size_t j = 0; j < mesh.interfaces.size(); ++j) {
@@ -62,7 +62,7 @@ int find_partner(std::vector<Connection> const& connections, int connection) {
   return -1;
 }
 
-std::vector<std::string> names_of(Mesh const& mesh, std::vector<int> const& patches) {
+std::vector<std::string> names_of(BoundaryMesh const& mesh, std::vector<int> const& patches) {
   std::set<std::string> names;
   for (int p : patches)
     names.insert(mesh.patches[p].families.empty() ? mesh.patches[p].name : mesh.patches[p].families.front());
@@ -71,7 +71,7 @@ std::vector<std::string> names_of(Mesh const& mesh, std::vector<int> const& patc
 
 class Resolver {
  public:
-  Resolver(Mesh const& mesh, Motion const& motion)
+  Resolver(BoundaryMesh const& mesh, Motion const& motion)
       : mesh_(mesh),
         motion_(motion),
         patch_claim_(mesh.patches.size(), unclaimed),
@@ -356,7 +356,7 @@ class Resolver {
                     "; regions take fixed, rigid, formula, field, attached, wake or shock");
   }
 
-  Mesh const& mesh_;
+  BoundaryMesh const& mesh_;
   Motion const& motion_;
   std::vector<int> patch_claim_;
   std::vector<AnyConnection> connections_;
@@ -378,6 +378,6 @@ std::string_view rule_name(Rule const& rule) {
   return names[rule.index()];
 }
 
-ResolvedMotion resolve(Mesh const& mesh, Motion const& motion) { return Resolver(mesh, motion).run(); }
+ResolvedMotion resolve(BoundaryMesh const& mesh, Motion const& motion) { return Resolver(mesh, motion).run(); }
 
 }  // namespace gridmorph

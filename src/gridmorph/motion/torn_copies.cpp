@@ -35,7 +35,7 @@ void TornCopies::add(std::string const& rule, std::string const& name, std::stri
   found.gap = gap;
 }
 
-std::vector<std::string> TornCopies::messages(Mesh const& mesh) const {
+std::vector<std::string> TornCopies::messages(BoundaryMesh const& mesh) const {
   std::vector<std::string> out;
   for (auto const& [rule, f] : found_)
     out.push_back(rule + " (" + f.name + ") gives " + std::to_string(f.count) + " nodes of " + f.patch +

@@ -21,7 +21,7 @@ class TornCopies {
   /// `rule`: where it is given; `name`: of its rule; `patch`: of the node, as users know it.
   void add(std::string const& rule, std::string const& name, std::string const& patch, Copies const& copies);
 
-  [[nodiscard]] std::vector<std::string> messages(Mesh const& mesh) const;
+  [[nodiscard]] std::vector<std::string> messages(BoundaryMesh const& mesh) const;
 
  private:
   struct Found {

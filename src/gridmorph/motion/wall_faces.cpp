@@ -22,7 +22,7 @@ WallFaces::WallFaces(Boundary const& boundary, std::vector<int> const& patches, 
     if (boundary.is_plane()) {
       BoundarySurface const& lines = boundary.surface(p);
       corners.clear();
-      for (Index const n : lines.nodes) corners.push_back(boundary.mesh().coordinates[n]);
+      for (Index const n : lines.nodes) corners.push_back(boundary.coordinates()[n]);
       for (GridFacet const& f : lines.faces) triangles.push_back({first + f[0], first + f[1], first + f[1]});
     }
     points.insert(points.end(), corners.begin(), corners.end());

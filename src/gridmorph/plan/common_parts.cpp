@@ -84,7 +84,7 @@ void each_share_of_area(Boundary const& boundary, int patch, Add const& add) {
   if (!surface.grid) return;
   int const n_a = (*surface.grid)[0], n_b = (*surface.grid)[1];
   auto const node = [&](int a, int b) { return surface.nodes[std::size_t(a) + std::size_t(n_a) * std::size_t(b)]; };
-  auto const at = [&](int a, int b) { return boundary.mesh().coordinates[node(a, b)]; };
+  auto const at = [&](int a, int b) { return boundary.coordinates()[node(a, b)]; };
   int const up_a = n_a > 1 ? 1 : 0, up_b = n_b > 1 ? 1 : 0;
   for (int b = 0; b + up_b < n_b; ++b)
     for (int a = 0; a + up_a < n_a; ++a) {

@@ -572,7 +572,7 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   scheduler.near_field(near_field_chains(basis.mesh, basis.topology, known, basis.fields));
   HandedOn const handed_on = roots.nodes().empty() ? HandedOn{} : scheduler.hand_on(basis.fields, roots);
   planned.order = scheduler.volume(handed_on, first, next);
-  std::vector<int> const surface_of_patch = slip_surface_numbers(mesh, surface, plan.surfaces);
+  std::vector<int> const surface_of_patch = slip_surface_numbers(mesh.patches.size(), surface, plan.surfaces);
   if (!roots.nodes().empty()) {
     roots.scale_turn(handed_on.turn);
     for (Stage& stage : plan.stages) leave_out_outer_edges_at_rest(roots, stage);

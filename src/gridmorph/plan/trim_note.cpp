@@ -17,7 +17,7 @@ namespace {
 /// Gathers what rules and surfaces say of one another.
 class Gathering {
  public:
-  Gathering(Mesh const& mesh, BoundaryRequests const& requests, BoundaryMotion const& motion,
+  Gathering(BoundaryMesh const& mesh, BoundaryRequests const& requests, BoundaryMotion const& motion,
             std::vector<Vec3> const& given)
       : mesh_(mesh),
         requests_(requests),
@@ -71,7 +71,7 @@ class Gathering {
     return rule >= 0 && goes_along(rules_[std::size_t(rule)].rule) ? -1 : rule;
   }
 
-  Mesh const& mesh_;
+  BoundaryMesh const& mesh_;
   BoundaryRequests const& requests_;
   std::vector<MotionRule> const& rules_;
   std::vector<Vec3> const& given_;
@@ -85,7 +85,7 @@ class Gathering {
 /// slip.
 std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
   std::vector<SlipSurface> surfaces;
-  std::vector<int> const number = slip_surface_numbers(motion.boundary().mesh(), motion, surfaces);
+  std::vector<int> const number = slip_surface_numbers(motion.boundary().patches().size(), motion, surfaces);
   std::vector<int> out(surfaces.size(), -1);
   for (std::size_t p = number.size(); p-- > 0;)
     if (number[p] >= 0) out[std::size_t(number[p])] = int(p);
@@ -114,8 +114,7 @@ std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests con
 
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given) {
   BoundaryMotion const& motion = *boundary.motion;
-  Mesh const& mesh = motion.boundary().mesh();
-  Gathering gathering(mesh, boundary.requests, motion, given);
+  Gathering gathering(motion.boundary().mesh(), boundary.requests, motion, given);
   double const size = motion.boundary().size();
   for (auto const& at : boundary.given_on_slip) {
     SlipSurface const& surface = motion.slip_surfaces()[std::size_t(at.surface)];

@@ -189,7 +189,7 @@ struct PreparedUnstructured {
   std::optional<std::vector<Vec3>> displacement;
 
   /// The displacement of UnstructuredPlan::known, evaluated where planning did not; throws MotionError.
-  [[nodiscard]] std::vector<Vec3> boundary_displacement(Mesh const& /*mesh*/) const {
+  [[nodiscard]] std::vector<Vec3> boundary_displacement() const {
     return displacement ? *displacement : evaluate(boundary);
   }
 };

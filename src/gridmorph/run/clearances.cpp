@@ -30,7 +30,7 @@ std::vector<Index> at_places(Coordinates const& x, std::vector<Index> const& nod
 }
 
 /// Per patch the number of the rule that names it, or -1.
-std::vector<int> rules_of_patches(Mesh const& mesh, std::vector<MotionRule> const& rules) {
+std::vector<int> rules_of_patches(BoundaryMesh const& mesh, std::vector<MotionRule> const& rules) {
   std::vector<int> out(mesh.patches.size(), -1);
   for (std::size_t r = 0; r < rules.size(); ++r)
     for (std::string const& selector : rules[r].patches)
@@ -58,8 +58,8 @@ std::vector<Index> Clearances::nodes_of(std::vector<int> const& patches) const {
 }
 
 Clearances::Tip Clearances::tip(ClearanceCase const& one, std::vector<int> const& rule_of_patch) const {
-  auto const walls = select_patches(boundary_.mesh(), one.walls);
-  auto const tips = select_patches(boundary_.mesh(), one.tips);
+  auto const walls = boundary_.select_patches(one.walls);
+  auto const tips = boundary_.select_patches(one.tips);
   Tip out;
   out.name = one.name;
   out.wall = nodes_of(walls);

@@ -50,7 +50,7 @@ class Clearances {
     Wall before_as_surface;  ///< where `before` is of revolution and a wall that moves may not stay so
   };
 
-  [[nodiscard]] Coordinates const& baseline() const { return boundary_.mesh().coordinates; }
+  [[nodiscard]] Coordinates const& baseline() const { return boundary_.coordinates(); }
   [[nodiscard]] std::vector<Index> nodes_of(std::vector<int> const& patches) const;
   [[nodiscard]] Tip tip(ClearanceCase const& one, std::vector<int> const& rule_of_patch) const;
   /// Of revolution; null where it is not, or where there is no axis.

@@ -36,18 +36,6 @@ std::string text_of_rule(Rule const& rule) {
                                                                   : " on the baseline surface");
 }
 
-bool is_periodic(Mesh const& mesh, int connection) {
-  auto const c = std::size_t(connection), n = mesh.interfaces.size();
-  return c < n ? mesh.interfaces[c].periodic.has_value() : mesh.connections[c - n].periodic.has_value();
-}
-
-std::string name_of_connection(Mesh const& mesh, int connection) {
-  auto const c = std::size_t(connection), n = mesh.interfaces.size();
-  return c < n ? mesh.interfaces[c].name : mesh.connections[c - n].name;
-}
-
-int n_connections(Mesh const& mesh) { return int(mesh.interfaces.size() + mesh.connections.size()); }
-
 page::RuleRow row_of(std::vector<Index> nodes, Coordinates const& baseline, Coordinates const& morphed) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -74,7 +62,7 @@ PatchRoles roles_of(BoundaryMotion const& rules, std::size_t n_patches) {
   PatchRoles out{std::vector<signed char>(n_patches, -1)};
   ResolvedMotion const& motion = rules.motion();
   for (std::size_t p = 0; p < n_patches && p < motion.patch.size(); ++p) {
-    PatchKind const kind = rules.boundary().mesh().patches[p].kind;
+    PatchKind const kind = rules.boundary().patches()[p].kind;
     bool const body = kind == PatchKind::wall || kind == PatchKind::other;
     int const r = motion.patch[p].rule;
     bool const moves =
@@ -92,7 +80,7 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
   ResolvedMotion const& motion = rules.motion();
   Boundary const& boundary = rules.boundary();
   std::vector<page::RuleRow> out;
-  auto const connections = int(std::min(std::size_t(n_connections(boundary.mesh())), motion.interface.size()));
+  std::vector<AnyConnection> const connections = boundary.connections();
   // Rules in order, then periodic connections that no rule has.
   for (int r = 0; r <= int(motion.rules.size()); ++r) {
     bool const none = r == int(motion.rules.size());
@@ -102,14 +90,14 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
     for (int p = 0; p < int(motion.patch.size()) && !none; ++p) {
       if (motion.patch[std::size_t(p)].rule != r) continue;
       by_default = motion.patch[std::size_t(p)].by_default;
-      names.push_back(label_of(boundary.mesh().patches[std::size_t(p)]));
+      names.push_back(label_of(boundary.patches()[std::size_t(p)]));
       auto const& of = boundary.surface(p).nodes;
       nodes.insert(nodes.end(), of.begin(), of.end());
     }
-    for (int c = 0; c < connections; ++c) {
-      if (motion.interface[std::size_t(c)].rule != (none ? -1 : r) || !is_periodic(boundary.mesh(), c)) continue;
-      names.push_back(name_of_connection(boundary.mesh(), c));
-      for (auto const& [own, donor] : boundary.pairs(c)) nodes.insert(nodes.end(), {own, donor});
+    for (std::size_t c = 0; c < connections.size() && c < motion.interface.size(); ++c) {
+      if (motion.interface[c].rule != (none ? -1 : r) || !connections[c].periodic) continue;
+      names.push_back(connections[c].name);
+      for (auto const& [own, donor] : boundary.pairs(int(c))) nodes.insert(nodes.end(), {own, donor});
     }
     if (names.empty()) continue;
     page::RuleRow row = row_of(std::move(nodes), baseline, morphed);
@@ -126,15 +114,15 @@ page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates cons
   page::BoundaryCheck out;
   Boundary const& boundary = rules.boundary();
   auto const u = [&](Index n) { return morphed[n] - baseline[n]; };
-  for (int c = 0; c < n_connections(boundary.mesh()); ++c) {
-    if (!is_periodic(boundary.mesh(), c)) continue;
-    Mat3 const rotation = boundary.transform(c).rotation;
-    for (auto const& [own, donor] : boundary.pairs(c)) {
+  for (AnyConnection const& c : boundary.connections()) {
+    if (!c.periodic) continue;
+    Mat3 const rotation = boundary.transform(c.number).rotation;
+    for (auto const& [own, donor] : boundary.pairs(c.number)) {
       ++out.periodic_nodes;
       out.periodic = std::max(out.periodic, norm(rotation * u(own) - u(donor)));
     }
   }
-  for (int p = 0; p < int(boundary.mesh().patches.size()); ++p)
+  for (int p = 0; p < int(boundary.patches().size()); ++p)
     rules.each_slip_surface(p, [&](int s, std::vector<Index> const& nodes) {
       auto const view = rules.slip_surfaces()[std::size_t(s)].view();
       for (Index const n : nodes) {

@@ -1,6 +1,5 @@
 #include <gridmorph/wheel/blade_share.hpp>
 
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/wheel/detail/pitch_fraction.hpp>
@@ -24,13 +23,7 @@ class Row {
  public:
   Row(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row, ResolvedMotion const& motion,
       OneOfPlace const& one_of_place)
-      : boundary_(boundary),
-        mesh_(boundary.mesh()),
-        links_(links),
-        rows_(rows),
-        row_(row),
-        motion_(motion),
-        one_of_place_(one_of_place) {}
+      : boundary_(boundary), links_(links), rows_(rows), row_(row), motion_(motion), one_of_place_(one_of_place) {}
 
   void prepare(SharedNodes const& all) {
     for (std::size_t l = 0; l < links_.all.size(); ++l) {
@@ -54,7 +47,7 @@ class Row {
     } else if (side != side_.end()) {
       out.position = (side->second == lower_side ? 0.0 : 1.0) - middle_;
     } else if (auto const& fraction = fraction_of(rule); !fraction.empty()) {
-      out.position = fraction(mesh_.coordinates[node]) - middle_;
+      out.position = fraction(boundary_.coordinates()[node]) - middle_;
     }
     return out;
   }
@@ -63,18 +56,18 @@ class Row {
   [[nodiscard]] std::vector<int> find_blades() const {
     std::set<int> out;
     auto const add = [&](int p) {
-      if (rows_.row_of_zone[mesh_.patches[p].zone] == row_) out.insert(p);
+      if (rows_.row_of_zone[boundary_.patches()[p].zone] == row_) out.insert(p);
     };
     for (MotionRule const& rule : motion_.rules) {
       if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule.rule))
-        for (int const p : select_patches(mesh_, slide->of)) add(p);
+        for (int const p : boundary_.select_patches(slide->of)) add(p);
       if (auto const* follow = std::get_if<FollowRule>(&rule.rule))
-        for (int const p : select_patches(mesh_, follow->of)) add(p);
+        for (int const p : boundary_.select_patches(follow->of)) add(p);
     }
     if (!out.empty()) return {out.begin(), out.end()};
-    for (int p = 0; p < int(mesh_.patches.size()); ++p) {
+    for (int p = 0; p < int(boundary_.patches().size()); ++p) {
       Rule const& rule = motion_.patch_rule(p);
-      if ((mesh_.patches[p].kind == PatchKind::wall || mesh_.patches[p].kind == PatchKind::other) &&
+      if ((boundary_.patches()[p].kind == PatchKind::wall || boundary_.patches()[p].kind == PatchKind::other) &&
           (std::holds_alternative<RigidRule>(rule) || std::holds_alternative<FunctionRule>(rule) ||
            std::holds_alternative<SectionsRule>(rule) || std::holds_alternative<TargetRule>(rule) ||
            std::holds_alternative<InflateRule>(rule) || std::holds_alternative<FfdRule>(rule)))
@@ -152,7 +145,7 @@ class Row {
             blade.push_back(other);
           } else if (number[other] != expected) {
             throw MotionError(
-                "blade " + describe_patch(mesh_, mesh_.patches[pieces[start].patch]) +
+                "blade " + boundary_.describe_patch(pieces[start].patch) +
                 " hangs together with the blade of the next passage, so the two cannot move differently; name the "
                 "blade alone in `of`, without hub and case");
           }
@@ -176,13 +169,12 @@ class Row {
     auto const known = fractions_.find(rule);
     if (known != fractions_.end()) return known->second;
     std::vector<int> patches;
-    for (int p = 0; p < int(mesh_.patches.size()); ++p)
+    for (int p = 0; p < int(boundary_.patches().size()); ++p)
       if (motion_.patch[p].rule == rule) patches.push_back(p);
     return fractions_.try_emplace(rule, boundary_, links_, rows_, row_, patches).first->second;
   }
 
   Boundary const& boundary_;
-  Mesh const& mesh_;
   PassageLinks const& links_;
   WheelRows const& rows_;
   int row_;
@@ -223,7 +215,7 @@ std::vector<BladeShare> blade_shares(Boundary const& sector, PassageLinks const&
     if (done[request.boundary_node] != 0) continue;
     done[request.boundary_node] = 1;
     Index const node = nodes[request.boundary_node];
-    auto const row = opened.find(rows.row_of_zone[sector.mesh().zone_of(node)]);
+    auto const row = opened.find(rows.row_of_zone[sector.zone_of(node)]);
     if (row != opened.end()) out[request.boundary_node] = row->second.share(node, request.rule);
   }
   return out;

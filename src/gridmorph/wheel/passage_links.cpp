@@ -25,8 +25,8 @@ Pairs reversed(Pairs pairs) {
   return pairs;
 }
 
-PassageLinks by_zone(Mesh const& mesh, std::vector<PassageLink> all, double mesh_size) {
-  PassageLinks out{std::move(all), std::vector<std::vector<int>>(mesh.zones.size()), mesh_size};
+PassageLinks by_zone(std::size_t n_zones, std::vector<PassageLink> all, double mesh_size) {
+  PassageLinks out{std::move(all), std::vector<std::vector<int>>(n_zones), mesh_size};
   for (std::size_t l = 0; l < out.all.size(); ++l) out.of_zone[std::size_t(out.all[l].zone)].push_back(int(l));
   return out;
 }
@@ -47,22 +47,21 @@ PassageLinks passage_links(Mesh const& mesh, Links const& links, TopologyOptions
     for_each_pair(mesh, link, [&](Index from, Index to) { own.pairs.push_back({from, to}); });
     all.push_back(std::move(own));
   }
-  return by_zone(mesh, std::move(all), links.mesh_size);
+  return by_zone(mesh.zones.size(), std::move(all), links.mesh_size);
 }
 
 PassageLinks passage_links(Boundary const& boundary) {
-  Mesh const& mesh = boundary.mesh();
   // As far apart as readers pair nodes.
   double const coincident = place_tolerance(1e-6, boundary.size(), boundary.precision().resolution());
   std::vector<PassageLink> all;
-  for (auto const& c : connections_of(mesh)) {
+  for (auto const& c : boundary.connections()) {
     PassageLink link{c.number, c.zone, c.donor_zone, c.periodic.has_value(),
                      {},       0,      coincident,   boundary.pairs(c.number)};
     if (link.pairs.empty()) continue;
     if (link.periodic) link.transform = boundary.transform(c.number);
     for (auto const& [from, to] : link.pairs) {
-      Vec3 const there = link.periodic ? link.transform(mesh.coordinates[from]) : mesh.coordinates[from];
-      link.mismatch = std::max(link.mismatch, distance(there, mesh.coordinates[to]));
+      Vec3 const there = link.periodic ? link.transform(boundary.coordinates()[from]) : boundary.coordinates()[from];
+      link.mismatch = std::max(link.mismatch, distance(there, boundary.coordinates()[to]));
     }
     all.push_back(std::move(link));
   }
@@ -78,7 +77,7 @@ PassageLinks passage_links(Boundary const& boundary) {
     back.transform = back.transform.inverse();
     all.push_back(std::move(back));
   }
-  return by_zone(mesh, std::move(all), boundary.size());
+  return by_zone(boundary.zones().size(), std::move(all), boundary.size());
 }
 
 std::string describe(Mesh const& mesh, PassageLink const& link) {

@@ -21,10 +21,10 @@ IndexRange common(IndexRange const& a, IndexRange const& b) {
 using Edges = std::vector<std::array<Index, 2>>;
 
 /// Of a patch of a block: those of the grid line in which it meets the link.
-Edges edges_of_line(Mesh const& mesh, Patch const& patch, PassageLink const& link) {
+Edges edges_of_line(Zone const& zone, Patch const& patch, PassageLink const& link) {
   IndexRange const line = common(patch.range, link.range);
   std::vector<Index> nodes;
-  if (line.size() >= 2) for_each_node(mesh.zones[patch.zone], line, [&](Index n) { nodes.push_back(n); });
+  if (line.size() >= 2) for_each_node(zone, line, [&](Index n) { nodes.push_back(n); });
   Edges out;
   for (std::size_t n = 1; n < nodes.size(); ++n) out.push_back({nodes[n - 1], nodes[n]});
   return out;
@@ -58,15 +58,15 @@ Edges edges_of_faces(Boundary const& boundary, int patch, PassageLink const& lin
 PitchFraction::PitchFraction(Boundary const& boundary, PassageLinks const& links, WheelRows const& rows, int row,
                              std::vector<int> const& patches)
     : pitch_(rows.rows[row].pitch) {
-  Mesh const& mesh = boundary.mesh();
   for (int const p : patches) {
-    Patch const& patch = mesh.patches[p];
+    Patch const& patch = boundary.patches()[p];
     if (rows.row_of_zone[patch.zone] != row) continue;
     for (int const l : links.of_zone[patch.zone]) {
       if (rows.pitches_of_link[l] != 1) continue;
-      for (auto const& [from, to] : boundary.surface(p).grid ? edges_of_line(mesh, patch, links.all[l])
-                                                             : edges_of_faces(boundary, p, links.all[l])) {
-        Segment s{pitch_.place(mesh.coordinates[from]), pitch_.place(mesh.coordinates[to])};
+      for (auto const& [from, to] : boundary.surface(p).grid
+                                        ? edges_of_line(boundary.zones()[patch.zone], patch, links.all[l])
+                                        : edges_of_faces(boundary, p, links.all[l])) {
+        Segment s{pitch_.place(boundary.coordinates()[from]), pitch_.place(boundary.coordinates()[to])};
         s.to.along = s.from.along + pitch_.pitches_near(s.to.along - s.from.along, 0);
         segments_.push_back(s);
       }

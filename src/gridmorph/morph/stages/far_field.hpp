@@ -1,7 +1,7 @@
 // Third stage of an unstructured morph: from the wrap through the background mesh to the nodes outside.
 #pragma once
 
-#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -23,8 +23,9 @@ class FarField {
         u_(exec, plan.background->mesh.n_nodes(), name("u")),
         boundary_(room_for<Vec3>(exec, plan.background_morph->plan().boundary_nodes.size(), name("boundary"))),
         rate_(room_for<Vec3>(exec, with_rate ? boundary_.extent(0) : 0, name("rate"))),
-        morpher_(exec, plan.background_morph->plan(), uploaded(exec, plan.background->mesh.coordinates).vectors(),
-                 {1, with_rate, nullptr, back}) {
+        morpher_(MorpherAccess::of(exec, plan.background_morph->plan(),
+                                   uploaded(exec, plan.background->mesh.coordinates).vectors(),
+                                   {1, with_rate, nullptr, back})) {
     if (!back) return;
     Plan const& background = plan.background_morph->plan();
     bends_ = !background.turns.roots.empty() || !background.spreads.empty();

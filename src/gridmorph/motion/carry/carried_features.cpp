@@ -1,4 +1,3 @@
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -226,7 +225,7 @@ CarriedFeatures::CarriedFeatures(Boundary const& boundary, ResolvedMotion const&
       auto const direction = kept.of(int(f));
       features_.push_back(made(rims[f], direction ? keep_along(fit, all, *direction) : fit, rule.fade));
     } catch (MotionError const& e) {
-      problems.add(name + ": the feature " + described(boundary.mesh(), int(f)) + " " + e.what());
+      problems.add(name + ": the feature " + described(boundary, int(f)) + " " + e.what());
     }
   problems.throw_if_any<MotionError>();
 }
@@ -250,7 +249,7 @@ CarriedFeatures::Feature CarriedFeatures::made(std::set<int> const& rim, RigidFi
   return out;
 }
 
-std::string CarriedFeatures::described(Mesh const& mesh, int feature) const {
+std::string CarriedFeatures::described(Boundary const& boundary, int feature) const {
   Vec3 sum;
   int count = 0;
   for (std::size_t v = 0; v < feature_of_.size(); ++v)
@@ -261,7 +260,7 @@ std::string CarriedFeatures::described(Mesh const& mesh, int feature) const {
   for (PatchGrid const& grid : surface_.grids)
     if (std::any_of(grid.vertex.begin(), grid.vertex.end(),
                     [&](int v) { return feature_of_[std::size_t(v)] == feature; }))
-      return describe_patch(mesh, mesh.patches[std::size_t(grid.patch)]) + " around " + to_text((1.0 / count) * sum, 4);
+      return boundary.describe_patch(grid.patch) + " around " + to_text((1.0 / count) * sum, 4);
   return "without patches";
 }
 

@@ -53,7 +53,7 @@ class CarriedFeatures {
  private:
   [[nodiscard]] int feature_at(Vec3 const& point) const;  ///< -1: none
   [[nodiscard]] Feature made(std::set<int> const& rim, RigidFit const& motion, std::optional<double> const& fade) const;
-  [[nodiscard]] std::string described(Mesh const& mesh, int feature) const;
+  [[nodiscard]] std::string described(Boundary const& boundary, int feature) const;
 
   std::string name_;
   PatchSurface surface_;

@@ -21,8 +21,7 @@ class Reach {
     find_nearest(features);
     for (std::size_t q = 0; q < limits.size(); ++q)
       if (limits[q] != 0)
-        for (Index const n : boundary.surface(int(q)).nodes)
-          end_at(surface.numbers.find(boundary.mesh().coordinates[n]));
+        for (Index const n : boundary.surface(int(q)).nodes) end_at(surface.numbers.find(boundary.coordinates()[n]));
     for (VertexImage const& image : vertex_images(boundary, surface)) end_at(image.vertex);
     part_features();
   }

@@ -1,7 +1,5 @@
 #include <gridmorph/motion/detail/edge_distances.hpp>
 
-#include <gridmorph/boundary/selectors.hpp>
-
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -12,13 +10,13 @@ namespace gridmorph {
 
 std::vector<VertexImage> vertex_images(Boundary const& boundary, PatchSurface const& surface) {
   std::vector<VertexImage> out;
-  Mesh const& mesh = boundary.mesh();
-  for (auto const& c : connections_of(mesh)) {
+  for (auto const& c : boundary.connections()) {
     // Those of other zones too: the rim of a patch may be a node of a zone beside it that has the periodic side.
     if (!c.periodic) continue;
     Mat3 const rotation = boundary.transform(c.number).rotation;
     for (auto const& [own, donor] : boundary.pairs(c.number)) {
-      int const a = surface.numbers.find(mesh.coordinates[own]), b = surface.numbers.find(mesh.coordinates[donor]);
+      int const a = surface.numbers.find(boundary.coordinates()[own]),
+                b = surface.numbers.find(boundary.coordinates()[donor]);
       if (a < 0 || b < 0 || a == b) continue;
       out.push_back({a, b, rotation});
       out.push_back({b, a, transpose(rotation)});

@@ -17,7 +17,7 @@ constexpr double same_plane = 0.866;  // 30 degrees
 
 /// Unit, zero of a collapsed face; of a line across the plane of the mesh and the line.
 Vec3 normal_of(Boundary const& boundary, BoundarySurface const& surface, GridFacet const& face) {
-  auto const x = [&](int corner) { return boundary.mesh().coordinates[surface.nodes[std::size_t(face[corner])]]; };
+  auto const x = [&](int corner) { return boundary.coordinates()[surface.nodes[std::size_t(face[corner])]]; };
   Vec3 const normal = face[2] < 0   ? cross(boundary.across(), x(1) - x(0))
                       : face[3] < 0 ? cross(x(1) - x(0), x(2) - x(0))
                                     : cross(x(2) - x(0), x(3) - x(1));

@@ -11,7 +11,7 @@
 namespace gridmorph::detail {
 
 /// Names of the periodic connections that move freely because no rule names them, each once.
-inline std::vector<std::string> free_by_default(Mesh const& mesh, ResolvedMotion const& motion) {
+inline std::vector<std::string> free_by_default(BoundaryMesh const& mesh, ResolvedMotion const& motion) {
   std::set<std::string> names;
   for (AnyConnection const& c : connections_of(mesh))
     if (motion.interface[std::size_t(c.number)].by_default)

@@ -2,7 +2,6 @@
 
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/boundary/periodic_copies.hpp>
-#include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -24,9 +23,9 @@ using Patches = std::vector<int>;
 /// How far nodes may lie off a profile of revolution, as a share of the wall's size (radius or extent along the axis).
 constexpr double profile_tolerance = 1e-3;
 
-std::string describe(Mesh const& mesh, Patches const& patches) {
+std::string describe(Boundary const& boundary, Patches const& patches) {
   std::vector<std::string> names;
-  for (int p : patches) names.push_back(describe_patch(mesh, mesh.patches[p]));
+  for (int p : patches) names.push_back(boundary.describe_patch(p));
   std::string text = names.front();
   if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more on the same surface";
   return text;
@@ -55,7 +54,7 @@ std::vector<Patches> meridionally_connected(Boundary const& boundary, Cylindrica
   std::vector<Mark> marks;
   for (std::size_t m = 0; m < patches.size(); ++m)
     for (Index const n : outline_nodes(boundary.surface(patches[m])))
-      marks.push_back({frame.meridional(boundary.mesh().coordinates[n]), int(m)});
+      marks.push_back({frame.meridional(boundary.coordinates()[n]), int(m)});
   std::sort(marks.begin(), marks.end(), [](Mark const& a, Mark const& b) { return a.at.axial < b.at.axial; });
 
   DisjointSets<int> sets(patches.size());
@@ -98,11 +97,11 @@ bool same_surface(SlipSurface const& a, SlipSurface const& b) {
 class Finder {
  public:
   Finder(Boundary const& boundary, ResolvedMotion const& motion, SlipSurfaces& out, std::vector<std::string>& notes)
-      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
+      : boundary_(boundary), motion_(motion), frame_(motion.axis), out_(out), notes_(notes) {}
 
   void run() {
     std::map<int, Patches> by_rule;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) by_rule[motion_.patch[p].rule].push_back(int(p));
+    for (std::size_t p = 0; p < boundary_.patches().size(); ++p) by_rule[motion_.patch[p].rule].push_back(int(p));
     for (auto const& [r, patches] : by_rule) {
       if (r < 0) continue;
       MotionRule const& rule = motion_.rules[r];
@@ -162,9 +161,9 @@ class Finder {
   /// Positions of nodes, as Boundary::points() has them for patches.
   [[nodiscard]] std::vector<Vec3> points_of(std::vector<Index> const& nodes) const {
     std::vector<Vec3> out;
-    for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
+    for (Index const n : nodes) out.push_back(boundary_.coordinates()[n]);
     if (boundary_.is_plane())
-      for (Index const n : nodes) out.push_back(mesh_.coordinates[n] + boundary_.across());
+      for (Index const n : nodes) out.push_back(boundary_.coordinates()[n] + boundary_.across());
     return out;
   }
 
@@ -193,7 +192,7 @@ class Finder {
     std::sort(listed.begin(), listed.end());
     for (Index const n : boundary_.surface(p).nodes) {
       if (std::binary_search(listed.begin(), listed.end(), n)) continue;
-      std::vector<Vec3> const point{mesh_.coordinates[n]};
+      std::vector<Vec3> const point{boundary_.coordinates()[n]};
       bool found = false;
       for (Part& part : out) {
         if (deviation_from_plane(point, part.fit.origin, part.fit.normal) > flat(part.fit.extent, point)) continue;
@@ -276,7 +275,7 @@ class Finder {
     surface.origin = given ? given->first : fit.origin;
     surface.direction = given ? (1 / norm(given->second)) * given->second : fit.normal;
     surface.baseline_deviation = deviation_from_plane(points, surface.origin, surface.direction);
-    std::string const who = where_ + ": patch " + describe(mesh_, members);
+    std::string const who = where_ + ": patch " + describe(boundary_, members);
     if (!given && !fit.determined) {
       problems_.add(who +
                     " is collapsed to a line, which lies on many planes; "
@@ -297,7 +296,7 @@ class Finder {
     // A rule whose patches are all collapsed has no facets to join.
     for (int const p : patches)
       if (boundary_.facets({&p, 1}).facets.empty())
-        problems_.add(where_ + ": patch " + describe(mesh_, {p}) + " has no facets; give it another rule");
+        problems_.add(where_ + ": patch " + describe(boundary_, {p}) + " has no facets; give it another rule");
     try {
       for (Patches const& members : smoothly_joined(boundary_, patches, options)) {
         SlipSurface surface;
@@ -322,14 +321,14 @@ class Finder {
         std::size_t creases = 0;
         for (kernels::Facet const& f : surface.facets.facets)
           for (int q = 0; q < 4; ++q) creases += f.is_crease(q) ? 1 : 0;
-        notes_.push_back("slip " + describe(mesh_, members) + ": its own surface, smooth through " +
+        notes_.push_back("slip " + describe(boundary_, members) + ": its own surface, smooth through " +
                          std::to_string(surface.facets.facets.size()) + " facets (periodic copies included), " +
                          std::to_string(creases / 2) + " edges are creases; nodes are within " +
                          to_text(surface.baseline_deviation, 3) + " of it");
         store(std::move(surface), members, points);
       }
     } catch (MotionError const& e) {
-      problems_.add(where_ + ": patch " + describe(mesh_, patches) + ": " + e.what());
+      problems_.add(where_ + ": patch " + describe(boundary_, patches) + ": " + e.what());
     }
   }
 
@@ -338,7 +337,7 @@ class Finder {
     std::map<std::string, Patches> families;
     Patches nameless;
     for (int p : patches) {
-      auto const& own = mesh_.patches[p].families;
+      auto const& own = boundary_.patches()[p].families;
       (own.empty() ? nameless : families[own.front()]).push_back(p);
     }
     for (auto const& [family, members] : families) {
@@ -358,7 +357,7 @@ class Finder {
       try {
         revolution(members, TurnedProfile::from_points);
       } catch (MotionError const& e) {
-        problems_.add(where_ + ": patch " + describe(mesh_, members) + ": " + e.what());
+        problems_.add(where_ + ": patch " + describe(boundary_, members) + ": " + e.what());
       }
     }
   }
@@ -423,8 +422,8 @@ class Finder {
       for (Vec3 const& p : boundary_.points(patch)) {
         double const off = distance(p, surface.view().project(p));
         if (off > profile_tolerance * size && off > surface.baseline_deviation)
-          far =
-              describe(mesh_, {patch}) + " is up to " + to_text(off, 3) + " off the given profile, most at " + place(p);
+          far = describe(boundary_, {patch}) + " is up to " + to_text(off, 3) + " off the given profile, most at " +
+                place(p);
         surface.baseline_deviation = std::max(surface.baseline_deviation, off);
       }
     if (!far.empty()) {
@@ -461,13 +460,13 @@ class Finder {
   }
 
   void note(Patches const& patches, SlipSurface const& s, char const* what) {
-    notes_.push_back("slip " + describe(mesh_, patches) + ": " + what + " " + std::to_string(s.profile.knots.size()) +
-                     " points, " + end(s, s.profile.knots.front()) + " to " + end(s, s.profile.knots.back()) +
-                     "; nodes are within " + to_text(s.baseline_deviation, 3) + " of it");
+    notes_.push_back("slip " + describe(boundary_, patches) + ": " + what + " " +
+                     std::to_string(s.profile.knots.size()) + " points, " + end(s, s.profile.knots.front()) + " to " +
+                     end(s, s.profile.knots.back()) + "; nodes are within " + to_text(s.baseline_deviation, 3) +
+                     " of it");
   }
 
   Boundary const& boundary_;
-  Mesh const& mesh_;
   ResolvedMotion const& motion_;
   CylindricalFrame frame_;
   SlipSurfaces& out_;
@@ -479,7 +478,7 @@ class Finder {
 }  // namespace
 
 SlipSurfaces::SlipSurfaces(Boundary const& boundary, ResolvedMotion const& motion, std::vector<std::string>& notes)
-    : of_patch(boundary.mesh().patches.size(), -1) {
+    : of_patch(boundary.patches().size(), -1) {
   Finder(boundary, motion, *this, notes).run();
 }
 

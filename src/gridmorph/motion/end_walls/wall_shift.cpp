@@ -54,7 +54,7 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   auto const& points = surface_->points;
   std::vector<int> rim;
   std::vector<Vec3> rim_displacement;
-  std::vector<char> of_blade(boundary.mesh().patches.size(), 0), is_rim(points.size(), 0);
+  std::vector<char> of_blade(boundary.patches().size(), 0), is_rim(points.size(), 0);
   for (ExtensionMotion const* blade : blades) {
     for (PatchGrid const& grid : blade->surface().grids) of_blade[std::size_t(grid.patch)] = 1;
     for (std::size_t b = 0; b < blade->surface().points.size(); ++b) {
@@ -84,7 +84,7 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   for (std::size_t q = 0; q < of_blade.size(); ++q) {
     if (of_blade[q] != 0) continue;
     for (Index const n : boundary.surface(int(q)).nodes)
-      if (int const v = surface_->numbers.find(boundary.mesh().coordinates[n]); v >= 0 && away[std::size_t(v)] > 0)
+      if (int const v = surface_->numbers.find(boundary.coordinates()[n]); v >= 0 && away[std::size_t(v)] > 0)
         reach = std::min(reach, away[std::size_t(v)]);
   }
   for (double const d : away)

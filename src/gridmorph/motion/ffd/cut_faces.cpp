@@ -64,7 +64,7 @@ std::array<bool, 6> cut_faces(Boundary const& boundary, std::vector<int> const& 
   std::array<bool, 6> cut{};
   for (int const p : patches) {
     BoundarySurface const& surface = boundary.surface(p);
-    auto const point = [&](int n) { return boundary.mesh().coordinates[surface.nodes[std::size_t(n)]]; };
+    auto const point = [&](int n) { return boundary.coordinates()[surface.nodes[std::size_t(n)]]; };
     std::vector<std::optional<Vec3>> places;
     for (std::size_t n = 0; n < surface.nodes.size(); ++n) places.push_back(lattice.place(point(int(n))));
     for_each_side(surface, [&](int a, int b) {

@@ -65,7 +65,7 @@ FfdMotion::FfdMotion(Boundary const& boundary, std::vector<int> const& patches, 
     : rule_(rule) {
   std::vector<Vec3> nodes;
   for (int const p : patches)
-    for (Index const n : boundary.surface(p).nodes) nodes.push_back(boundary.mesh().coordinates[n]);
+    for (Index const n : boundary.surface(p).nodes) nodes.push_back(boundary.coordinates()[n]);
   if (nodes.empty()) throw MotionError(name + ": its patches have no nodes");
   bool const fitted = !rule_.box && rule_.points.empty();
   if (fitted) rule_.box = box_around(nodes, rule_.margin, name);

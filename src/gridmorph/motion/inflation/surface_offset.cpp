@@ -88,13 +88,13 @@ SurfaceOffset::SurfaceOffset(Boundary const& boundary, PatchSurface const& surfa
 void SurfaceOffset::find_rims(Boundary const& boundary, PatchSurface const& surface, SlipSurfaces const& slip) {
   rims_.resize(points_.size());
   std::map<int, int> number;  // of slip surfaces, in touched_
-  std::vector<char> own(boundary.mesh().patches.size(), 0);
+  std::vector<char> own(boundary.patches().size(), 0);
   for (PatchGrid const& grid : surface.grids) own[std::size_t(grid.patch)] = 1;
   for (std::size_t q = 0; q < own.size(); ++q) {
     int const s = slip.of_patch[q];
     if (s < 0 || own[q] != 0) continue;
     for (Index const n : boundary.surface(int(q)).nodes) {
-      int const v = surface.numbers.find(boundary.mesh().coordinates[n]);
+      int const v = surface.numbers.find(boundary.coordinates()[n]);
       if (v < 0) continue;
       auto const [at, fresh] = number.try_emplace(s, int(touched_.size()));
       if (fresh) touched_.push_back(&slip.surfaces[std::size_t(s)]);

@@ -111,13 +111,13 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
     mapping_ = Mapping::nodes;
     if (!finite(target.nodes)) throw MotionError(name + ": a point of the target is not finite");
     if (!target.nodes.empty()) {
-      displacement_ = match_nodes(surface_, target.nodes, boundary.mesh(), name);
+      displacement_ = match_nodes(surface_, target.nodes, boundary, name);
       notes.push_back(name + ": mapped node for node");
       return;
     }
     if (!target.grids.empty()) static_cast<void>(target_facets(target, name));  // its checks
     if (target.triangles.empty() || !automatic)
-      if (auto u = match_grids(surface_, target.grids, boundary.mesh(), name, notes)) {
+      if (auto u = match_grids(surface_, target.grids, boundary, name, notes)) {
         displacement_ = std::move(*u);
         return;
       }
@@ -156,7 +156,7 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
   TargetGeometry const& target = *rule.target;
   for (PatchGrid const& grid : surface_.grids)
     if (grid.faces.empty())
-      throw MotionError(name_ + ": patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[grid.patch]) +
+      throw MotionError(name_ + ": patch " + boundary.describe_patch(grid.patch) +
                         " has no faces that could go to a target");
   if (rule.mapping == Mapping::nodes || (rule.mapping == Mapping::automatic && !target.nodes.empty())) {
     if (target.nodes.empty())
@@ -165,7 +165,7 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
           ": the patches of an unstructured mesh are no grids; list one point per node in the order of their "
           "numbers, or give mapping = \"projection\"");
     if (!finite(target.nodes)) throw MotionError(name_ + ": a point of the target is not finite");
-    displacement_ = match_nodes(surface_, target.nodes, boundary.mesh(), name_);
+    displacement_ = match_nodes(surface_, target.nodes, boundary, name_);
     notes.push_back(name_ + ": mapped node for node");
     return;
   }

@@ -169,7 +169,7 @@ std::vector<Vec3> displacement(PatchSurface const& surface, std::vector<Vec3> co
 }  // namespace
 
 std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::vector<TargetGrid> const& grids,
-                                             Mesh const& mesh, std::string const& name,
+                                             Boundary const& boundary, std::string const& name,
                                              std::vector<std::string>& notes) {
   GridMatcher matcher(surface, grids);
   std::vector<std::string> found;
@@ -178,7 +178,7 @@ std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::v
   if (matcher.gap > same_place(surface))
     throw MotionError(name + ": the grids that were matched with the patches come apart at the node " +
                       to_text(surface.points[matcher.gap_vertex], 9) + " of patch " +
-                      describe_patch(mesh, mesh.patches[matcher.gap_patch]) + " by " + std::to_string(matcher.gap) +
+                      boundary.describe_patch(matcher.gap_patch) + " by " + std::to_string(matcher.gap) +
                       "; give a target whose pieces meet where the patches do, or mapping = \"projection\"");
   std::string note = name + ": mapped node for node";
   for (std::size_t n = 0; n < found.size(); ++n) note += (n == 0 ? "; " : ", ") + found[n];
@@ -186,7 +186,7 @@ std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::v
   return displacement(surface, matcher.target);
 }
 
-std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> const& nodes, Mesh const& mesh,
+std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> const& nodes, Boundary const& boundary,
                               std::string const& name) {
   std::size_t wanted = 0;
   for (PatchGrid const& patch : surface.grids) wanted += patch.vertex.size();
@@ -205,9 +205,8 @@ std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> con
         target[v] = t;
       } else if (distance(t, target[v]) > same_place(surface)) {
         throw MotionError(name + ": the node " + to_text(surface.points[v], 9) + " of patch " +
-                          describe_patch(mesh, mesh.patches[patch.patch]) +
-                          " coincides with one listed before, but goes to " + to_text(t, 9) + " (point " +
-                          std::to_string(n) + ") instead of " + to_text(target[v], 9) +
+                          boundary.describe_patch(patch.patch) + " coincides with one listed before, but goes to " +
+                          to_text(t, 9) + " (point " + std::to_string(n) + ") instead of " + to_text(target[v], 9) +
                           "; nodes that coincide need one target");
       }
     }

@@ -19,12 +19,12 @@ namespace gridmorph {
 /// Throws MotionError where patches meet and their grids do not. Cost O(nodes), times the places where a closed grid
 /// may start (on at most 2000 of its nodes).
 std::optional<std::vector<Vec3>> match_grids(PatchSurface const& surface, std::vector<TargetGrid> const& grids,
-                                             Mesh const& mesh, std::string const& name,
+                                             Boundary const& boundary, std::string const& name,
                                              std::vector<std::string>& notes);
 
 /// Displacement of every vertex from positions listed patch after patch, i fastest. Throws MotionError when their
 /// number is not that of the nodes, or coincident nodes have different targets.
-std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> const& nodes, Mesh const& mesh,
+std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> const& nodes, Boundary const& boundary,
                               std::string const& name);
 
 }  // namespace gridmorph

@@ -134,8 +134,7 @@ OwnSections sections_of_rows(Boundary const& boundary, PatchSurface const& surfa
   }
   std::string note = std::to_string(own.size()) + " rows of nodes";
   for (int const p : found.left_out)
-    note += "; patch " + describe_patch(boundary.mesh(), boundary.mesh().patches[p]) +
-            " has no sections and goes along with its edges";
+    note += "; patch " + boundary.describe_patch(p) + " has no sections and goes along with its edges";
   return {std::move(places), own.front(), own.back(), std::move(note)};
 }
 

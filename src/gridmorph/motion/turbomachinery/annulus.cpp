@@ -171,12 +171,11 @@ std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const
   struct Extent {
     double lo = inf, hi = -inf;
   };
-  Mesh const& mesh = boundary.mesh();
   constexpr double parallel = 1e-6;
   std::map<int, Extent> extents;
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+  for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
     int const s = surfaces.of_patch[p];
-    Patch const& patch = mesh.patches[p];
+    Patch const& patch = boundary.patches()[p];
     if (s < 0 || !in_row[patch.zone] || ends_row(patch.kind)) continue;
     SlipSurface const& surface = surfaces.surfaces[s];
     bool const across = surface.kind == SlipSurface::Kind::plane && patch.kind == PatchKind::wall &&

@@ -33,7 +33,7 @@ class Stitcher {
     if (!sliced_ && !of_blocks_ && !lines_reach()) sliced_ = true;
     if (sliced_) slice();
     for (int const p : left_out_)
-      notes_.push_back("patch " + describe_patch(boundary_.mesh(), boundary_.mesh().patches[std::size_t(p)]) +
+      notes_.push_back("patch " + boundary_.describe_patch(p) +
                        " has no spanwise grid lines (a tip face?) and is left "
                        "out of the blade's sections");
     return std::move(blade_);

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-std::vector<std::string> names_of_blades(Mesh const& mesh, std::vector<int> const& patches) {
+std::vector<std::string> names_of_blades(Boundary const& boundary, std::vector<int> const& patches) {
   std::set<std::string> names;
   for (int const p : patches) {
-    Patch const& patch = mesh.patches[std::size_t(p)];
+    Patch const& patch = boundary.patches()[std::size_t(p)];
     names.insert(patch.families.empty() ? patch.name : patch.families.front());
   }
   return {names.begin(), names.end()};
@@ -35,22 +35,21 @@ std::vector<MeridionalPoint> meridional_points(Boundary const& boundary, Cylindr
 
 /// Zones that hold the blade or hang together with those by node-to-node interfaces.
 std::vector<bool> zones_of_row(Boundary const& boundary, std::vector<int> const& blades) {
-  Mesh const& mesh = boundary.mesh();
-  DisjointSets<int> rows(mesh.zones.size());
-  for (AnyConnection const& i : connections_of(mesh)) rows.join(i.zone, i.donor_zone);
+  DisjointSets<int> rows(boundary.zones().size());
+  for (AnyConnection const& i : boundary.connections()) rows.join(i.zone, i.donor_zone);
   std::set<int> roots;
-  for (int p : blades) roots.insert(rows.root(mesh.patches[p].zone));
-  std::vector<bool> in_row(mesh.zones.size());
+  for (int p : blades) roots.insert(rows.root(boundary.patches()[p].zone));
+  std::vector<bool> in_row(boundary.zones().size());
   for (std::size_t z = 0; z < in_row.size(); ++z) in_row[z] = roots.contains(rows.root(int(z)));
   return in_row;
 }
 
 std::vector<int> end_walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
                                   std::vector<bool> const& in_row) {
-  Mesh const& mesh = boundary.mesh();
   std::set<int> found;
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    if (int const s = surfaces.of_patch[p]; s >= 0 && in_row[mesh.patches[p].zone] && !ends_row(mesh.patches[p].kind))
+  for (std::size_t p = 0; p < boundary.patches().size(); ++p)
+    if (int const s = surfaces.of_patch[p];
+        s >= 0 && in_row[boundary.patches()[p].zone] && !ends_row(boundary.patches()[p].kind))
       found.insert(s);
   return {found.begin(), found.end()};
 }
@@ -58,7 +57,6 @@ std::vector<int> end_walls_of_row(Boundary const& boundary, SlipSurfaces const& 
 BladeSections make_sections(Boundary const& boundary, std::vector<int> const& blades, CylindricalFrame const& frame,
                             Annulus const& annulus, RowMotion::PatchDisplacement const& displacement,
                             std::vector<std::string>& notes) {
-  Mesh const& mesh = boundary.mesh();
   // Across the flow, what counts is how far the blade departs from keeping its span fraction.
   auto const motion = [&](Vec3 const& point, Vec3 const& u) {
     return annulus.components(frame.meridional(point), frame.motion(point, u));
@@ -71,12 +69,12 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
                          displacement};
   BladeSurface surface = stitch_blade(boundary, blades, input, notes);
   if (int const left_out = leave_out_splitters(surface); left_out > 0)
-    notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " + std::to_string(left_out) +
+    notes.push_back("blade " + boundary.describe_patch(blades.front()) + ": " + std::to_string(left_out) +
                     " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
   BladeSections const sections(surface);
   constexpr double apart = 1e-3;  // chords, radians: more than blunt edges make of the two sides of one blade
   if (auto const spread = sections.edge_spread(); spread.length > apart || spread.angle_rad > apart)
-    notes.push_back("blade " + quote_list(names_of_blades(mesh, blades)) + ": its " +
+    notes.push_back("blade " + quote_list(names_of_blades(boundary, blades)) + ": its " +
                     std::to_string(surface.contours.size()) +
                     " contours do not move alike: their edges differ from the mean, which inlet, exit and periodics "
                     "follow, by up to " +
@@ -85,11 +83,10 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
                     "that are the same about the axis");
   auto const closed =
       std::count_if(surface.contours.begin(), surface.contours.end(), [](auto const& c) { return c.closed; });
-  notes.push_back("blade " + describe_patch(mesh, mesh.patches[blades.front()]) + ": " +
-                  std::to_string(surface.lines.size()) + " spanwise lines in " + std::to_string(closed) +
-                  " closed and " + std::to_string(std::ptrdiff_t(surface.contours.size()) - closed) +
-                  " open contours; span fractions " + std::to_string(sections.first_span()) + " to " +
-                  std::to_string(sections.last_span()) +
+  notes.push_back("blade " + boundary.describe_patch(blades.front()) + ": " + std::to_string(surface.lines.size()) +
+                  " spanwise lines in " + std::to_string(closed) + " closed and " +
+                  std::to_string(std::ptrdiff_t(surface.contours.size()) - closed) + " open contours; span fractions " +
+                  std::to_string(sections.first_span()) + " to " + std::to_string(sections.last_span()) +
                   (annulus.has_walls() ? " between hub and case"
                    : frame.is_linear() ? " of its own extent, in a linear cascade"
                    : frame.is_plane()  ? " across a plane"
@@ -107,7 +104,7 @@ std::optional<std::vector<Vec3>> pitch_directions(Boundary const& boundary, Reso
                                                   std::vector<bool> const& in_row, bool followers) {
   constexpr double no_turn = 1e-9, same = 1e-6;
   std::vector<Vec3> found;
-  for (AnyConnection const& c : connections_of(boundary.mesh())) {
+  for (AnyConnection const& c : boundary.connections()) {
     if (!c.periodic || !in_row[std::size_t(c.zone)]) continue;
     int const r = motion.interface[std::size_t(c.number)].rule;
     if (followers && !(r >= 0 && std::holds_alternative<FollowRule>(motion.rules[std::size_t(r)].rule))) continue;
@@ -136,12 +133,11 @@ Vec3 upwards(Vec3 const& v) {
 bool lies_across(Boundary const& boundary, std::vector<bool> const& in_row, Vec3 const& direction) {
   constexpr double parallel = 1e-6, flat = 1e-3;  // of the distance between the planes
   if (boundary.is_plane()) return norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());
-  Mesh const& mesh = boundary.mesh();
   double low = inf, high = -inf;
   auto const for_heights = [&](auto&& visit) {
-    for (std::size_t z = 0; z < mesh.zones.size(); ++z)
-      for (Index n = 0; in_row[z] && n < mesh.zones[z].size(); ++n)
-        if (!visit(dot(mesh.coordinates[mesh.zones[z].first_node + n], direction))) return false;
+    for (std::size_t z = 0; z < boundary.zones().size(); ++z)
+      for (Index n = 0; in_row[z] && n < boundary.zones()[z].size(); ++n)
+        if (!visit(dot(boundary.coordinates()[boundary.zones()[z].first_node + n], direction))) return false;
     return true;
   };
   for_heights([&](double h) {
@@ -182,7 +178,7 @@ CylindricalFrame frame_of_row(Boundary const& boundary, ResolvedMotion const& mo
 std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary, std::vector<int> const& blades) {
   std::vector<bool> const in_row = zones_of_row(boundary, blades);
   std::vector<RigidTransform> out;
-  for (AnyConnection const& connection : connections_of(boundary.mesh()))
+  for (AnyConnection const& connection : boundary.connections())
     if (connection.periodic && in_row[std::size_t(connection.zone)])
       out.push_back(boundary.transform(connection.number));
   return out;
@@ -214,7 +210,7 @@ bool RowMotion::is_same_row(Boundary const& boundary, std::vector<int> const& bl
   if (std::any_of(blades.begin(), blades.end(),
                   [&](int p) { return std::binary_search(others.begin(), others.end(), p); }))
     return true;
-  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[boundary.mesh().patches[p].zone]; }))
+  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[boundary.patches()[p].zone]; }))
     return false;
   double lo = inf, hi = -inf;
   for (MeridionalPoint const& p : meridional_points(boundary, frame_, others)) {
@@ -228,7 +224,6 @@ bool RowMotion::is_same_row(Boundary const& boundary, std::vector<int> const& bl
 RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion const& motion,
                                    std::vector<int> const& blades, int side,
                                    PatchDisplacement const& displacement) const {
-  Mesh const& mesh = boundary.mesh();
   double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
   auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
     return std::all_of(points.begin(), points.end(),
@@ -237,17 +232,17 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
 
   std::vector<MeridionalPoint> sliding, others;
   int first_sliding = -1;
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    Patch const& patch = mesh.patches[p];
+  for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
+    Patch const& patch = boundary.patches()[p];
     auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
-    if (slide != nullptr && is_same_row(boundary, blades, select_patches(mesh, slide->of))) {
+    if (slide != nullptr && is_same_row(boundary, blades, boundary.select_patches(slide->of))) {
       auto const points = meridional_points(boundary, frame_, {int(p)});
       if (beyond(points, middle_)) {
         sliding.insert(sliding.end(), points.begin(), points.end());
         if (first_sliding < 0) first_sliding = int(p);
       } else if (std::any_of(points.begin(), points.end(),
                              [&](auto const& q) { return side * (annulus_.along(q) - middle_) > 0; })) {
-        throw MotionError("patch " + describe_patch(mesh, patch) +
+        throw MotionError("patch " + boundary.describe_patch(int(p)) +
                           " has the rule circumferential-slide but lies beside the blade's "
                           "mid-chord at " +
                           std::string(annulus_.turns()    ? "flow path length "
@@ -265,7 +260,7 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
   End end;
   end.slides = first_sliding >= 0;
   if (end.slides) {
-    auto const with = select_patches(mesh, std::get<CircumferentialSlideRule>(motion.patch_rule(first_sliding)).of);
+    auto const with = boundary.select_patches(std::get<CircumferentialSlideRule>(motion.patch_rule(first_sliding)).of);
     std::vector<std::string> known;  // the slide's own row says all this
     if (with != blades)
       end.slides_with =
@@ -282,7 +277,7 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
     // An end that does not move may have any shape: the taper then ends at the outermost position.
     if (end.slides)
       throw MotionError(
-          "patch " + describe_patch(mesh, mesh.patches[first_sliding]) +
+          "patch " + boundary.describe_patch(first_sliding) +
           " has the rule circumferential-slide, but its position along the flow (its axial position, where "
           "that is axial) is not a function of the span fraction (here called axial position, and its "
           "position along the flow radius): " +
@@ -293,13 +288,12 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
 }
 
 double RowMotion::outermost(Boundary const& boundary, int side) const {
-  Mesh const& mesh = boundary.mesh();
   double m = -side * inf;
-  for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+  for (std::size_t z = 0; z < boundary.zones().size(); ++z) {
     if (!row_zones_[z]) continue;
-    Zone const& zone = mesh.zones[z];
+    Zone const& zone = boundary.zones()[z];
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
-      double const here = annulus_.along(frame_.meridional(mesh.coordinates[n]));
+      double const here = annulus_.along(frame_.meridional(boundary.coordinates()[n]));
       m = side < 0 ? std::min(m, here) : std::max(m, here);
     }
   }

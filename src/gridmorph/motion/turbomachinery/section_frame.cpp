@@ -131,7 +131,7 @@ Vec3 longest_extent(std::vector<Vec3> const& points) {
 
 Vec3 span_direction(Boundary const& boundary, std::vector<int> const& patches, std::vector<Vec3> const& points) {
   if (boundary.is_plane()) return unit(boundary.across());
-  auto const& all = boundary.mesh().patches;
+  auto const& all = boundary.patches();
   for (int q = 0; q < int(all.size()); ++q) {
     if (all[std::size_t(q)].kind != PatchKind::symmetry) continue;
     if (std::none_of(patches.begin(), patches.end(), [&](int p) { return boundary.share_nodes(p, q); })) continue;

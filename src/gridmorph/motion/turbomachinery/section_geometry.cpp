@@ -400,7 +400,7 @@ std::vector<SectionGeometry> find_sections(Boundary const& boundary, SectionFram
                       " open surfaces; give each blade, with its two sides, a rule of its own");
   if (found.empty()) throw MotionError("the patches make up no blade or wing; name its walls");
   for (std::size_t b = 0; b < found.size(); ++b)
-    notes.push_back("sections of " + describe_patch(boundary.mesh(), boundary.mesh().patches[patches.front()]) +
+    notes.push_back("sections of " + boundary.describe_patch(patches.front()) +
                     (found.size() > 1 ? ", number " + std::to_string(b + 1) : std::string()) + ": " +
                     found[b].description());
   return found;

@@ -32,7 +32,7 @@ double integral_of_tangent(SpanwiseTable const& angle, double from, double to) {
 EdgeTrim::EdgeTrim(Boundary const& boundary, SectionFrame const& frame, std::vector<int> const& patches,
                    SlipSurfaces const& surfaces) {
   std::set<int> touched;
-  for (std::size_t q = 0; q < boundary.mesh().patches.size(); ++q) {
+  for (std::size_t q = 0; q < boundary.patches().size(); ++q) {
     int const s = surfaces.of_patch[q];
     if (s < 0 || surfaces.surfaces[std::size_t(s)].kind == SlipSurface::Kind::axial) continue;
     for (int p : patches)

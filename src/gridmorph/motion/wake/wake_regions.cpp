@@ -25,8 +25,7 @@ struct Wake {
       : boundary(std::move(of)),
         motion(std::move(resolved)),
         surfaces(*boundary, motion, notes),
-        places(*boundary, motion, search(wake), select_patches(boundary->mesh(), wake.of), surfaces, wake.angle_rad,
-               notes),
+        places(*boundary, motion, search(wake), boundary->select_patches(wake.of), surfaces, wake.angle_rad, notes),
         length(wake.length),
         half_width(wake.width / 2) {}
 
@@ -49,7 +48,7 @@ bool have_wakes(std::span<InnerRegion const> regions) {
   return std::any_of(regions.begin(), regions.end(), [](InnerRegion const& r) { return r.wake.has_value(); });
 }
 
-Motion without_regions(Mesh const& mesh, Motion motion) {
+Motion without_regions(BoundaryMesh const& mesh, Motion motion) {
   auto const about_region = [&](std::string const& selector) {
     if (selector == "type:region") return true;
     bool const any = std::any_of(motion.regions.begin(), motion.regions.end(),

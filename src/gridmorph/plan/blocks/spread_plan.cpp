@@ -240,11 +240,11 @@ void sweep_again(std::vector<RuleChains>& lists) {
 
 }  // namespace
 
-std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& motion,
+std::vector<int> slip_surface_numbers(std::size_t n_patches, BoundaryMotion const& motion,
                                       std::vector<SlipSurface>& surfaces) {
-  std::vector<int> number(mesh.patches.size(), -1);
+  std::vector<int> number(n_patches, -1);
   std::map<int, int> place;  // in the order of patches
-  for (int p = 0; p < int(mesh.patches.size()); ++p) {
+  for (int p = 0; p < int(n_patches); ++p) {
     int const s = motion.slip_surface_of(p);
     if (s < 0) continue;
     auto const [at, fresh] = place.try_emplace(s, int(surfaces.size()));

@@ -7,7 +7,7 @@
 namespace gridmorph {
 
 /// Number of each patch's slip surface in `surfaces`, which it fills; -1 for patches that do not slip.
-std::vector<int> slip_surface_numbers(Mesh const& mesh, BoundaryMotion const& motion,
+std::vector<int> slip_surface_numbers(std::size_t n_patches, BoundaryMotion const& motion,
                                       std::vector<SlipSurface>& surfaces);
 
 /// Fills plan.spreads. Every block face on a slip patch starts a chain that runs through all blocks to

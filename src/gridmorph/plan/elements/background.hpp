@@ -6,9 +6,9 @@
 //   Background background = make_background(wrap);
 //   PreparedMorph prepared = prepare_background(background);
 //   WrapNodes nodes = wrap_nodes(background, prepared);   // whose displacements are needed, and where they go
-//   Morpher<Exec> morpher(exec, prepared.plan(), x_of_background);
+//   auto const morpher = MorpherAccess::of(exec, prepared.plan(), x_of_background);
 //   ... every time: gather displacements at nodes.position into the View `boundary`, zero elsewhere
-//   morpher.displace(exec, boundary, u_of_background);
+//   morpher.displacements(exec, boundary, u_of_background);
 //
 // and its displacements come to the nodes of the far field by the rows of lattice_rows().
 #pragma once
