@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/field_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/formula.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mapping/inverse_field.hpp>

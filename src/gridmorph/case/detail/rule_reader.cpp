@@ -1,10 +1,7 @@
-#include <gridmorph/case/detail/bulb_reader.hpp>
-#include <gridmorph/case/detail/ffd_reader.hpp>
-#include <gridmorph/case/detail/field_reader.hpp>
 #include <gridmorph/case/detail/inflate_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>
-#include <gridmorph/case/detail/target_reader.hpp>
 #include <gridmorph/case/formula.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/suggest.hpp>
