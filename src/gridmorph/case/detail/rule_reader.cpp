@@ -8,7 +8,6 @@
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/contour.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
-#include <gridmorph/motion/section_share.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/target_sections.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 
 #include <gridmorph/boundary/joined_sides.hpp>
 #include <gridmorph/core/error.hpp>
