@@ -52,7 +52,7 @@ struct SectionMapping {
 /// Sides that lie a pitch apart (H mesh) are brought together by the periodic transforms of the mesh, at the copy of
 /// the blade that is nearest to the target. Stitches the spanwise grid lines of the patches into one closed contour;
 /// its rows are the sections of the mesh. Of patches without grid lines they are cuts through the facets
-/// (sliced_sections.hpp). A node at SectionPosition p and span coordinate w goes to the target's surface at p and the
+/// (section_rows.hpp). A node at SectionPosition p and span coordinate w goes to the target's surface at p and the
 /// same share of the span between the ends of the column p, or the same w (TargetRule::SpanMatch). Between target
 /// sections: cubic Hermite pieces over w with slopes from parabolas; positions that agree with a section to 1e-9 take
 /// its point exactly. One target section alone shapes all nodes of a mesh and leaves their w as it is.

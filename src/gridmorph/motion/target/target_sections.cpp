@@ -5,7 +5,6 @@
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/target/section_profile.hpp>
 #include <gridmorph/motion/target/section_rows.hpp>
-#include <gridmorph/motion/target/sliced_sections.hpp>
 #include <gridmorph/motion/target/span_coordinate.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
 
