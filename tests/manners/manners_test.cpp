@@ -362,10 +362,10 @@ TEST_F(UnstructuredManners, StagesAreRegionsOfProfiles) {
   std::vector<std::string> own;
   for (auto const& region : record.regions)
     if (region.find("gridmorph::stage ") != 0 && region != "gridmorph::all nodes") own.push_back(region);
-  EXPECT_EQ(own,
-            (std::vector<std::string>{"gridmorph::GivenSlip", "gridmorph::WallMotion", "gridmorph::TakeTurns",
-                                      "gridmorph::NearField", "gridmorph::FarField", "gridmorph::slip surfaces",
-                                      "gridmorph::AddTurns", "gridmorph::OtherBoundaries", "gridmorph::JoinedNodes"}));
+  EXPECT_EQ(own, (std::vector<std::string>{"gridmorph::GivenSlip", "gridmorph::WallMotion", "gridmorph::TakeTurns",
+                                           "gridmorph::NearField", "gridmorph::FarField", "gridmorph::slip surfaces",
+                                           "gridmorph::AddTurns", "gridmorph::StartResidual", "gridmorph::AskBoundary",
+                                           "gridmorph::SpreadResidual", "gridmorph::CopyNodes"}));
   EXPECT_EQ(record.open_regions, 0);
 }
 

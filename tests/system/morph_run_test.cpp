@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
+#include <utility>
 
 namespace gridmorph::testing {
 namespace {
@@ -257,7 +259,7 @@ TEST_F(MorphRun, DryRunPrintsThePlanAndWritesNothing) {
 TEST_F(MorphRun, AMeshThatInvertsIsWrittenOnlyWhenAskedFor) {
   std::string const torn =
       "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n"
-      "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
+      "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n[guard]\nretry = false\n";
   write_case("case.toml", torn);
   Outcome const refused = gridmorph("morph case.toml");
   EXPECT_EQ(refused.status, 4) << refused.err;
@@ -321,7 +323,7 @@ TEST_F(MorphRun, CellsThatWereFlatHaveALineOfTheirOwnAndBlockNoMorph) {
   expect_flat(pitch + "[guard]\nsmooth = true\n", 0);
   Coordinates const guarded = read_mesh(path("out.cgns").string()).coordinates;
   for (Index n = 0; n < plain.size(); ++n) ASSERT_EQ(plain[n], guarded[n]);
-  Outcome const torn = move_tip(waves("0.01"));
+  Outcome const torn = move_tip(waves("0.01") + "[guard]\nretry = false\n");
   EXPECT_EQ(torn.status, 4) << torn.err << torn.out;
   std::size_t const at = torn.err.find("valid up to ");
   ASSERT_NE(at, std::string::npos) << torn.err;
@@ -329,9 +331,10 @@ TEST_F(MorphRun, CellsThatWereFlatHaveALineOfTheirOwnAndBlockNoMorph) {
 }
 
 TEST_F(MorphRun, WhereAMotionIsTooLargeItSaysHowMuchOfItIsValid) {
-  write_case("case.toml",
-             "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n"
-             "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n");
+  write_case(
+      "case.toml",
+      "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndtheta = \"0.2*sin(200*axial)\"\n"
+      "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n[guard]\nretry = false\n");
   Outcome const refused = gridmorph("morph case.toml");
   ASSERT_EQ(refused.status, 4) << refused.err;
   std::string const said = "valid up to ";
@@ -413,41 +416,74 @@ TEST_F(MorphRun, AFrozenGuardGivesTheMeshThatTheGuardMade) {
     ASSERT_LT(distance(frozen.coordinates[n], smoothed.coordinates[n]), 1e-12 * frozen.size()) << n;
 }
 
-TEST_F(MorphRun, OtherRecipesAreTriedWhereAskedForAndTheirKeysGiveTheSameMesh) {
-  std::string large = contents(path("rotation.toml"));
-  std::string const file = "file    = \"rotation.csv\"";
-  large.replace(large.find(file), file.size(), file + "\namplitude = 10");
-  auto const moved = [&](std::string const& toml) {
+/// The rotation of the passage, ten times as large.
+class Recipes : public MorphRun {
+ protected:
+  void SetUp() override {
+    MorphRun::SetUp();
+    large = contents(path("rotation.toml"));
+    std::string const file = "file    = \"rotation.csv\"";
+    large.replace(large.find(file), file.size(), file + "\namplitude = 10");
+  }
+  std::pair<Outcome, nlohmann::json> moved(std::string const& toml) {
     write("case.toml", toml);
     Outcome const run = gridmorph("morph case.toml --report r.json");
-    return std::pair(run, nlohmann::json::parse(contents(path("r.json"))));
-  };
-  auto const [refused, plain] = moved(large);
-  ASSERT_EQ(refused.status, 4) << "the motion is too large";
-  EXPECT_FALSE(plain.contains("retry")) << "nothing is tried unasked";
+    return {run, nlohmann::json::parse(contents(path("r.json")))};
+  }
+  /// The keys that a report says are kept give its mesh, bit for bit, without any search.
+  void expect_same_by_hand(Outcome const& run, nlohmann::json const& report) {
+    auto const& retry = report["retry"];
+    EXPECT_GT(retry["first"]["newly_inverted"], 0);
+    std::string const kept = retry["kept"];
+    EXPECT_NE(run.out.find(kept), std::string::npos) << "the keys are said";
+    auto const tried = std::find_if(retry["tried"].begin(), retry["tried"].end(),
+                                    [&](auto const& one) { return one["keys"] == kept; });
+    ASSERT_NE(tried, retry["tried"].end());
+    EXPECT_EQ((*tried)["newly_inverted"], 0);
+    Mesh const best = read_mesh(path("passage_rotation.cgns").string());
+    std::string const by_hand = test::with_keys(large + "\n[guard]\nretry = false\n", kept);
+    auto const [again, same] = moved(by_hand);
+    ASSERT_EQ(again.status, run.status) << again.err << by_hand;
+    EXPECT_FALSE(same.contains("retry"));
+    Mesh const repeated = read_mesh(path("passage_rotation.cgns").string());
+    for (Index n = 0; n < best.n_nodes(); ++n) ASSERT_EQ(best.coordinates[n], repeated.coordinates[n]) << n << by_hand;
+  }
+
+  std::string large;
+};
+
+TEST_F(Recipes, AreTriedByThemselvesWhereCellsOfBlocksAreInverted) {
+  auto const [run, report] = moved(large);
+  ASSERT_LE(run.status, 1) << run.err;
+  expect_same_by_hand(run, report);
+}
+
+TEST_F(Recipes, AreTriedForLimitsToWhereAskedFor) {
   auto const [run, report] = moved(large + "\n[guard]\nretry = true\n");
   ASSERT_LE(run.status, 1) << run.err;
-  auto const& retry = report["retry"];
-  EXPECT_GT(retry["first"]["newly_inverted"], 0);
-  std::string const kept = retry["kept"];
-  EXPECT_NE(run.out.find(kept), std::string::npos) << "the keys are said";
-  bool found = false;
-  for (auto const& tried : retry["tried"])
-    if (tried["keys"] == kept) {
-      found = true;
-      EXPECT_EQ(tried["newly_inverted"], 0);
-      EXPECT_LT(tried["newly_inverted"], retry["first"]["newly_inverted"]);
-    }
-  EXPECT_TRUE(found);
-  Mesh const best = read_mesh(path("passage_rotation.cgns").string());
-  std::string const by_hand = test::with_keys(large, kept);
-  auto const [again, same] = moved(by_hand);
-  ASSERT_EQ(again.status, run.status) << again.err << by_hand;
-  Mesh const repeated = read_mesh(path("passage_rotation.cgns").string());
-  for (Index n = 0; n < best.n_nodes(); ++n) ASSERT_EQ(best.coordinates[n], repeated.coordinates[n]) << n << by_hand;
+  expect_same_by_hand(run, report);
+  auto const [strict, tried] =
+      moved(contents(path("rotation.toml")) + "\n[guard]\nretry = true\nmin_determinant = 0.99\n");
+  EXPECT_EQ(strict.status, 1);
+  EXPECT_TRUE(tried.contains("retry"));
   auto const [sound, untried] = moved(contents(path("rotation.toml")) + "\n[guard]\nretry = true\n");
   EXPECT_EQ(sound.status, 0);
   EXPECT_FALSE(untried.contains("retry")) << "nothing falls short";
+}
+
+TEST_F(Recipes, AreNotTriedWhereSomebodySaysSoOrTheyWouldNotHelp) {
+  for (auto const& [key, status] : {std::pair("retry = false", 4), std::pair("write_inverted = true", 1)}) {
+    auto const [run, report] = moved(large + "\n[guard]\n" + key + "\n");
+    EXPECT_EQ(run.status, status) << run.err;
+    EXPECT_FALSE(report.contains("retry")) << key;
+  }
+  write_case("case.toml",
+             "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\ndx = \"20 * r\"\n"
+             "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n");
+  Outcome const run = gridmorph("morph case.toml --report r.json");
+  EXPECT_EQ(run.status, 4) << run.err;
+  EXPECT_NE(run.err.find("likely cause"), std::string::npos) << run.err;
+  EXPECT_FALSE(nlohmann::json::parse(contents(path("r.json"))).contains("retry")) << "another unit";
 }
 
 TEST_F(MorphRun, AThresholdThatIsNotMetGivesStatusOneAndTheMesh) {

@@ -160,6 +160,23 @@ TEST_F(Su2, PeriodicMarkersBecomeConnections) {
   EXPECT_EQ(largest_mismatch(mesh, mesh.connections[0]), 0);
 }
 
+TEST_F(Su2, PeriodicMarkersOfOtherElementsThanVerticesAreLeftOut) {
+  std::string const vertices = "MARKER_ELEMS= 2\nSEND_TO= {}\n1 0 1\n1 3 1\n",
+                    line = "MARKER_ELEMS= 1\nSEND_TO= {}\n3 2 5\n";
+  auto const marker = [](std::string const& text, char const* rank) {
+    return "MARKER_TAG= SEND_RECEIVE\n" + replaced(text, "{}", rank);
+  };
+  std::string const transforms =
+      "NPERIODIC= 2\nPERIODIC_INDEX= 0\n0 0 0\n0 0 0\n0 0 0\nPERIODIC_INDEX= 1\n0 0 0\n0 0 0\n1 0 0\n";
+  for (bool const first : {false, true}) {  // as many nodes on both sides, but those of the other are no vertices
+    auto const mesh =
+        read(square + marker(first ? line : vertices, "1") + marker(first ? vertices : line, "-1") + transforms);
+    EXPECT_TRUE(mesh.connections.empty());
+    ASSERT_FALSE(mesh.notes.empty());
+    EXPECT_NE(mesh.notes.back().find("no vertices; skipped"), std::string::npos) << mesh.notes.back();
+  }
+}
+
 /// A unit cube of two prisms, in the numbering of CGNS or of VTK.
 std::string prisms(bool vtk) {
   return std::string("NDIME= 3\nNELEM= 2\n") +

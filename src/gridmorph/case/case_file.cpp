@@ -31,7 +31,7 @@ constexpr std::uintmax_t largest_case_file = 4u << 20;
 /// Steps are numbered with up to five digits.
 constexpr int largest_sequence = 99999;
 
-void read_mesh(TableReader& root, CaseFile& out) {
+void read_mesh_table(TableReader& root, CaseFile& out) {
   root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
   auto mesh = root.table("mesh");
   if (!mesh) return;
@@ -371,7 +371,7 @@ CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
   out.source = document.path();
   context.lines = document.root().text.lines;
   TableReader root(context, document.root().text.root, "");
-  read_mesh(root, out);
+  read_mesh_table(root, out);
   read_sequence(root, out);
   auto const constants = read_motion(root, out);
   read_plan(root, constants, out);

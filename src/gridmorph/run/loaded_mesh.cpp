@@ -209,7 +209,7 @@ KindTraits const& traits_of(MeshKind kind) {
       .lost = "cells had corners whose scaled Jacobian was below 0.2 and half of what it was",
       .change =
           "leave order, priority and law out of [volume], so that they are looked for, change [boundary_layer], set "
-          "smooth or retry = true in [guard]",
+          "smooth = true in [guard]",
       .change_many = "[volume] or [boundary_layer]",
       .costs = {20, 20, 2, 8, 15, 35}};
   static KindTraits const elements{.cells = "elements",

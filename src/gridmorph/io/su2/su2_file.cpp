@@ -160,7 +160,11 @@ class Builder {
         mesh_.notes.push_back(where + " has no counterpart of as many nodes; skipped");
         continue;
       }
-      for (std::size_t k = 0; k < send.nodes.size() && k < send.transform.size(); ++k) {
+      if (send.transform.size() != send.nodes.size() || receive->transform.size() != receive->nodes.size()) {
+        mesh_.notes.push_back(where + " or its counterpart has elements that are no vertices; skipped");
+        continue;
+      }
+      for (std::size_t k = 0; k < send.nodes.size(); ++k) {
         int const index = receive->transform[k];
         Index32 const own = node_of(z, send, send.nodes[k], problems);
         Index32 const donor = node_of(z, *receive, receive->nodes[k], problems);

@@ -4,6 +4,7 @@
 
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/joint_slip.hpp>
+#include <gridmorph/morph/stages/boundary_steps.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
@@ -23,54 +24,56 @@ kernels::JointSlipTable<typename Exec::memory_space> joint_slip_table(
           upload(exec, plan.rotations, label + "::rot"), surfaces.surfaces};
 }
 
-/// Part of a stage: nodes that move as one.
+/// Nodes that move as one are put on the surfaces of all of them.
 template <class Exec>
 class JointNodes {
  public:
-  JointNodes() = default;
-  /// Fences where there is anything to hold.
-  JointNodes(Exec const& exec, UnstructuredPlan const& plan, UnstructuredPlan::JointNodes const& of,
-             SlipSurfaceTable<typename Exec::memory_space> const& surfaces, bool back, std::string const& label) {
-    if (of.slip.empty()) return;
+  static inline std::string const region = "gridmorph::JointNodes";
+
+  /// back: where the transpose is asked for. Fences.
+  JointNodes(Exec const& exec, OnList<Exec> on, UnstructuredPlan const& plan, UnstructuredPlan::JointNodes const& of,
+             SlipSurfaceTable<typename Exec::memory_space> const& surfaces, bool back)
+      : on_(on), surfaces_(surfaces) {
     std::vector<Index32> node;
     std::vector<std::int32_t> turn;
     for (Index32 const image : of.images.item) {
       node.push_back(plan.images[std::size_t(image)].node);
       turn.push_back(plan.images[std::size_t(image)].rotation);
     }
-    nodes_ = {joint_slip_table(exec, plan, of.slip, surfaces, label), upload(exec, of.slip.of, label + "::owner"),
-              upload(exec, of.images.first, label + "::images"), upload(exec, node, label + "::node"),
-              upload(exec, turn, label + "::turn")};
-    if (back) kept_ = room_for<Vec3>(exec, of.slip.of.size(), label + "::kept");
+    nodes_ = {joint_slip_table(exec, plan, of.slip, surfaces_, region), upload(exec, of.slip.of, region + "::owner"),
+              upload(exec, of.images.first, region + "::images"), upload(exec, node, region + "::node"),
+              upload(exec, turn, region + "::turn")};
+    if (back) kept_ = room_for<Vec3>(exec, of.slip.of.size(), region + "::kept");
     compat::fence(exec, "gridmorph::stages::JointNodes (host tables may go)");
   }
 
-  [[nodiscard]] bool empty() const { return nodes_.owner.extent(0) == 0; }
-  void enqueue(Exec const& exec, Baseline const& x, List<Exec, Vec3> const& u) const {
-    if (!empty())
-      kernels::launch("gridmorph::joint_slip", exec,
-                      kernels::HoldJointNodes<Memory, false>{nodes_, x, u.data(), nullptr});
+  void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::joint_slip", exec,
+                    kernels::HoldJointNodes<Memory, false>{nodes_, x, (f.*on_).data(), nullptr});
   }
-  /// Of u too.
-  void rate(Exec const& exec, Baseline const& x, List<Exec, Vec3> const& u, List<Exec, Vec3> const& rate) const {
-    if (!empty())
-      kernels::launch("gridmorph::joint_slip", exec,
-                      kernels::HoldJointNodes<Memory, true>{nodes_, x, u.data(), rate.data()});
+  void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
+    kernels::launch("gridmorph::joint_slip", exec,
+                    kernels::HoldJointNodes<Memory, true>{nodes_, x, (f.*on_).data(), (r.*on_).data()});
   }
-  /// Before enqueue(), for the transpose.
-  void keep(Exec const& exec, List<Exec, Vec3> const& u) const {
-    if (!empty())
-      kernels::launch("gridmorph::transposed::keep_joint_slip", exec,
-                      kernels::KeepJointNodes<Memory>{nodes_, u.data(), kept_.data()});
+
+  [[nodiscard]] static bool bends() { return true; }
+  void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
+    kernels::launch("gridmorph::transposed::keep_joint_slip", exec,
+                    kernels::KeepJointNodes<Memory>{nodes_, (f.*on_).data(), kept_.data()});
   }
-  void transpose(Exec const& exec, Baseline const& x, List<Exec, Vec3> const& g) const {
-    if (!empty())
-      kernels::launch("gridmorph::transposed::joint_slip", exec,
-                      kernels::HoldJointNodesBack<Memory>{nodes_, x, kept_.data(), g.data()});
+  void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
+    keep(exec, x, f);
+    enqueue(exec, x, f);
+  }
+  void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
+    kernels::launch("gridmorph::transposed::joint_slip", exec,
+                    kernels::HoldJointNodesBack<Memory>{nodes_, x, kept_.data(), (g.*on_).data()});
   }
 
  private:
   using Memory = typename Exec::memory_space;
+  OnList<Exec> on_;
+  SlipSurfaceTable<Memory> surfaces_;  ///< that the tables point into
   kernels::JointNodes<Memory> nodes_;
   List<Exec, Vec3> kept_;
 };

@@ -6,7 +6,7 @@
 #include <gridmorph/morph/stages/body_turns.hpp>
 #include <gridmorph/morph/stages/common_motion.hpp>
 #include <gridmorph/morph/stages/far_field.hpp>
-#include <gridmorph/morph/stages/joined_nodes.hpp>
+#include <gridmorph/morph/stages/middle_nodes.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
 #include <gridmorph/morph/stages/near_layers.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
@@ -24,8 +24,10 @@
 namespace gridmorph::stages {
 
 template <class Exec>
-using ElementStage = std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, FarField<Exec>,
-                                  AddTurns<Exec>, OtherBoundaries<Exec>, JoinedNodes<Exec>>;
+using ElementStage =
+    std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>,
+                 StartResidual<Exec>, AskBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>, GoAlong<Exec>,
+                 SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
 
 /// The stages of a plan without parts.
 template <class Exec>
@@ -33,7 +35,7 @@ struct ElementStages {
   std::vector<ElementStage<Exec>> walls;   ///< what moving walls carry
   std::vector<ElementStage<Exec>> others;  ///< what other boundaries ask for, then nodes that follow others
 
-  /// back: positions of all nodes, where transposes are asked for. common, x: as for JoinedNodes.
+  /// back: positions of all nodes, where transposes are asked for. common, x: as for FollowCorners.
   ElementStages(Exec const& exec, UnstructuredPlan const& plan, bool velocity, std::vector<Vec3> const* back,
                 CommonMotion const* common = nullptr, Baseline const& x = {}) {
     walls.emplace_back(WallMotion<Exec>(exec, plan, velocity, back));
@@ -48,8 +50,8 @@ struct ElementStages {
       walls.emplace_back(NearField<Exec>(exec, plan, back));
     if (plan.background) walls.emplace_back(FarField<Exec>(exec, plan, velocity, back != nullptr));
     if (turns) walls.emplace_back(AddTurns<Exec>(turns));
-    others.emplace_back(OtherBoundaries<Exec>(exec, plan, back, common, x));
-    others.emplace_back(JoinedNodes<Exec>(exec, plan, back != nullptr, common, x));
+    add_other_boundaries(others, exec, plan, back, common, x);
+    add_followers(others, exec, plan, back != nullptr, common, x);
   }
 
   [[nodiscard]] FarField<Exec> const* far_field() const {

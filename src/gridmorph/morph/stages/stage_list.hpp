@@ -22,7 +22,8 @@ namespace gridmorph::stages {
 template <class Exec>
 using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, AddCommon<Exec>, SlipSpread<Exec>, WallMotion<Exec>,
                            TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>,
-                           OtherBoundaries<Exec>, JoinedNodes<Exec>, MorphParts<Exec>>;
+                           StartResidual<Exec>, AskBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>, GoAlong<Exec>,
+                           SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>, MorphParts<Exec>>;
 
 template <class Exec>
 struct StageList {
