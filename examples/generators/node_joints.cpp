@@ -124,7 +124,7 @@ class NodeJoints {
       }
   }
 
-  /// From a cell as far as cells fit along u, then as far as whole rows of them do along v.
+  /// Grows from a cell as far as cells fit along u, then as far as whole rows of them do along v.
   template <class Fits>
   static Rectangle grow(Face const& face, int u, int v, Fits const& fits) {
     int end_u = u, end_v = v + 1;

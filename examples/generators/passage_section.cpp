@@ -211,7 +211,7 @@ class PassageSection {
     return down_.phi(double(n) / (counts_.leading_lower + counts_.side + counts_.trailing_lower));
   }
 
-  /// Straight normals off the wall.
+  /// Fills the ring with straight normals off the wall.
   void fill_ring(std::array<PieceNodes, n_pieces>& pieces, std::array<std::vector<double>, 4>& ring_phi) {
     PassageCounts const& c = counts_;
     double const thickness = options_.ring_thickness * airfoil_.chord();
@@ -258,7 +258,7 @@ class PassageSection {
     return {x, airfoil_.camber(x) + fraction * half_pitch_};
   }
 
-  /// One upstream and one downstream of the blade, each from periodic to periodic.
+  /// Draws one edge upstream and one downstream of the blade, each from periodic to periodic.
   void draw_pitchwise_edges() {
     Point2 const c1 = leading_upper_.at, c2 = leading_lower_.at, c3 = trailing_upper_.at, c4 = trailing_lower_.at;
     x_up_ = 0.5 * (c1.x + c2.x);
@@ -274,7 +274,7 @@ class PassageSection {
     lower_2_ = to_corner(l2, cross2, trailing_lower_, -30, to_ring_low_);
   }
 
-  /// From inlet to ring and from ring to outlet.
+  /// Draws the edges from inlet to ring and from ring to outlet.
   void draw_streamwise_edges() {
     PassageCounts const& c = counts_;
     auto const share = [](int corner, int beyond) { return 0.15 + 0.5 * corner / double(corner + beyond); };
@@ -309,7 +309,7 @@ class PassageSection {
     fill(pieces[lower], periodic_line(x_up_, x_down_, along, -1), bottom_side_, lower_1_, lower_2_);
   }
 
-  /// Its boundary is straight along theta, as that of the outlet.
+  /// The inlet itself is straight along theta, as the outlet is.
   void fill_inlet(std::array<PieceNodes, n_pieces>& pieces) const {
     double const x = options_.inlet;
     Point2 const i1 = inlet_up_.front(), i2 = inlet_low_.front();

@@ -7,16 +7,16 @@
 
 namespace gridmorph::casefile {
 
-/// Of rule = "bulb".
+/// Reads rule = "bulb".
 TimedRule read_bulbs(TableReader& table, RuleContext const& shared);
 
-/// Of rule = "ffd".
+/// Reads rule = "ffd".
 TimedRule read_ffd(TableReader& table, RuleContext const& shared);
 
-/// Of a `field` rule; its fields are added to the case file. The files that it names are read.
+/// Reads a `field` rule; its fields are added to the case file. The files that it names are read.
 TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& out);
 
-/// Of rule = "target".
+/// Reads rule = "target".
 Rule read_target_rule(TableReader& table, RuleContext const& shared);
 
 }  // namespace gridmorph::casefile

@@ -245,7 +245,7 @@ class TextTrials {
     return nodes;
   }
 
-  /// With iblank and without.
+  /// Tries both: with iblank and without.
   void try_contents(TextCandidate& c, std::uint64_t nodes) {
     auto& v = c.layout.variant;
     auto const count = numbers_.all().size();
