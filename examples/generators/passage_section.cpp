@@ -143,6 +143,210 @@ namespace {
 /// they face the passage, whose pitch lines run along theta whatever the stagger.
 constexpr double corner_turn = 50 * pi / 180;
 
+/// A corner of the ring and the outward normal there.
+struct RingCorner {
+  Point2 at, normal;
+};
+
+Point2 normal_at(Airfoil const& airfoil, double phi) {
+  Point2 const t = unit(airfoil.tangent(phi));
+  return {-t.y, t.x};
+}
+
+/// The direction of an edge that leaves the ring: half by the rule, half straight to its other end.
+Point2 leaving(Point2 rule, Point2 straight) { return unit(unit(rule) + unit(straight)); }
+
+/// The edge from a corner to a point; `turn`: from the normal [degrees].
+Line from_corner(RingCorner const& corner, double turn, Point2 to, Point2 to_direction, Fractions const& fractions) {
+  return curve(corner.at, leaving(rotated(corner.normal, turn), to - corner.at), to, to_direction, fractions);
+}
+
+/// The same the other way round.
+Line to_corner(Point2 from, Point2 from_direction, RingCorner const& corner, double turn, Fractions const& fractions) {
+  return curve(from, from_direction, corner.at, -1.0 * leaving(rotated(corner.normal, turn), from - corner.at),
+               fractions);
+}
+
+/// A straight line with its nodes at these fractions.
+Line pitch_line(Point2 a, Point2 b, Fractions const& s) {
+  Line line(s.size());
+  for (std::size_t n = 0; n < s.size(); ++n) line[n] = a + s[n] * (b - a);
+  line.back() = b;
+  return line;
+}
+
+Fractions even(std::size_t nodes) { return towards_even(Fractions(nodes), 0); }
+
+/// The pieces of one section but those over the tip: first the ring, then the edges that leave its corners, then what
+/// lies between them.
+class PassageSection {
+ public:
+  PassageSection(PassageOptions const& options, PassageCounts const& counts, Annulus const& annulus, double span)
+      : options_(options),
+        counts_(counts),
+        airfoil_(options, span),
+        up_(airfoil_, BladeSide::Side::upper),
+        down_(airfoil_, BladeSide::Side::lower),
+        half_pitch_(pi * annulus.section_radius(span) / options.blades) {}
+
+  void fill_pieces(std::array<PieceNodes, n_pieces>& pieces, std::array<std::vector<double>, 4>& ring_phi) {
+    fill_ring(pieces, ring_phi);
+    find_corners();
+    draw_pitchwise_edges();
+    draw_streamwise_edges();
+    fill_beside_blade(pieces);
+    fill_inlet(pieces);
+    fill_outlet(pieces);
+  }
+
+  [[nodiscard]] Airfoil const& airfoil() const { return airfoil_; }
+
+ private:
+  /// phi of the wall's nodes, counted from the leading edge.
+  [[nodiscard]] double phi_up(int n) const {
+    return up_.phi(double(n) / (counts_.leading_upper + counts_.side + counts_.trailing_upper));
+  }
+  /// Continues past the trailing edge (n < 0 from there on), so phi stays ascending round the blade.
+  [[nodiscard]] double phi_down(int n) const {
+    return down_.phi(double(n) / (counts_.leading_lower + counts_.side + counts_.trailing_lower));
+  }
+
+  /// Fills the ring with straight normals off the wall.
+  void fill_ring(std::array<PieceNodes, n_pieces>& pieces, std::array<std::vector<double>, 4>& ring_phi) {
+    PassageCounts const& c = counts_;
+    double const thickness = options_.ring_thickness * airfoil_.chord();
+    int const n_up = c.leading_upper + c.side + c.trailing_upper, n_down = c.leading_lower + c.side + c.trailing_lower;
+    double const first = std::max(options_.first_cell / options_.ring_thickness,
+                                  demo::first_of_geometric(c.layers, options_.max_growth));
+    Fractions const off_wall = demo::geometric_spacing(c.layers, first);
+    last_layer_ = thickness * (1 - off_wall[c.layers - 1]);
+    auto const ring = [&](Piece piece, auto const& phi_of) {
+      PieceNodes& nodes = pieces[piece];
+      std::vector<double>& places = ring_phi[piece];
+      places.resize(std::size_t(nodes.ni));
+      for (int i = 0; i < nodes.ni; ++i) {
+        double const phi = places[std::size_t(i)] = phi_of(i);
+        Point2 const wall = airfoil_.point(phi), normal = normal_at(airfoil_, phi);
+        for (int k = 0; k < nodes.nk; ++k) nodes.at(i, k) = wall + (off_wall[k] * thickness) * normal;
+      }
+      Line outer(nodes.ni);
+      for (int i = 0; i < nodes.ni; ++i) outer[i] = nodes.at(i, nodes.nk - 1);
+      return outer;
+    };
+    le_ = ring(ring_le, [&](int i) {
+      int const n = i - c.leading_lower;
+      return n >= 0 ? phi_up(n) : phi_down(-n);
+    });
+    top_side_ = ring(ring_upper, [&](int i) { return phi_up(c.leading_upper + i); });
+    te_ = ring(ring_te, [&](int i) {
+      int const n = i - c.trailing_upper;
+      return n <= 0 ? phi_up(n_up + n) : phi_down(n_down - n);
+    });
+    bottom_side_ = reversed(ring(ring_lower, [&](int i) { return phi_down(c.leading_lower + c.side - i); }));
+  }
+
+  void find_corners() {
+    PassageCounts const& c = counts_;
+    leading_upper_ = {le_.back(), normal_at(airfoil_, phi_up(c.leading_upper))};
+    leading_lower_ = {le_.front(), normal_at(airfoil_, phi_down(c.leading_lower))};
+    trailing_upper_ = {te_.front(), normal_at(airfoil_, phi_up(c.leading_upper + c.side))};
+    trailing_lower_ = {te_.back(), normal_at(airfoil_, phi_down(c.leading_lower + c.side))};
+  }
+
+  /// A point so much of half the pitch above the camber line: 1 and -1 on the periodics.
+  [[nodiscard]] Point2 station(double x, double fraction) const {
+    return {x, airfoil_.camber(x) + fraction * half_pitch_};
+  }
+
+  /// Draws one edge upstream and one downstream of the blade, each from periodic to periodic.
+  void draw_pitchwise_edges() {
+    Point2 const c1 = leading_upper_.at, c2 = leading_lower_.at, c3 = trailing_upper_.at, c4 = trailing_lower_.at;
+    x_up_ = 0.5 * (c1.x + c2.x);
+    x_down_ = 0.5 * (c3.x + c4.x);
+    Point2 const u1 = station(x_up_, 1), l1 = station(x_up_, -1), u2 = station(x_down_, 1), l2 = station(x_down_, -1);
+    Point2 const cross1 = unit((u1 - c1) + (c2 - l1)), cross2 = unit((u2 - c3) + (c4 - l2));
+    from_ring_up_ = demo::geometric_spacing(counts_.upper, last_layer_ / (0.5 * (length(u1 - c1) + length(u2 - c3))));
+    to_ring_low_ =
+        reversed(demo::geometric_spacing(counts_.lower, last_layer_ / (0.5 * (length(l1 - c2) + length(l2 - c4)))));
+    upper_1_ = from_corner(leading_upper_, -30, u1, cross1, from_ring_up_);
+    upper_2_ = from_corner(trailing_upper_, 30, u2, cross2, from_ring_up_);
+    lower_1_ = to_corner(l1, cross1, leading_lower_, 30, to_ring_low_);
+    lower_2_ = to_corner(l2, cross2, trailing_lower_, -30, to_ring_low_);
+  }
+
+  /// Draws the edges from inlet to ring and from ring to outlet.
+  void draw_streamwise_edges() {
+    PassageCounts const& c = counts_;
+    auto const share = [](int corner, int beyond) { return 0.15 + 0.5 * corner / double(corner + beyond); };
+    Point2 const flow_in = direction(airfoil_.inlet_angle()), flow_out = direction(airfoil_.outlet_angle());
+    Point2 const i1 = station(options_.inlet, share(c.leading_upper, c.upper));
+    Point2 const i2 = station(options_.inlet, -share(c.leading_lower, c.lower));
+    Point2 const o1 = station(options_.outlet, share(c.trailing_upper, c.upper));
+    Point2 const o2 = station(options_.outlet, -share(c.trailing_lower, c.lower));
+    in_ = reversed(demo::geometric_spacing(
+        c.inlet, 1.5 * last_layer_ / (0.5 * (length(leading_upper_.at - i1) + length(leading_lower_.at - i2)))));
+    out_ = demo::geometric_spacing(
+        c.outlet, 1.5 * last_layer_ / (0.5 * (length(o1 - trailing_upper_.at) + length(o2 - trailing_lower_.at))));
+    inlet_up_ = to_corner(i1, flow_in, leading_upper_, 30, in_);
+    inlet_low_ = to_corner(i2, flow_in, leading_lower_, -30, in_);
+    outlet_up_ = from_corner(trailing_upper_, -30, o1, flow_out, out_);
+    outlet_low_ = from_corner(trailing_lower_, 30, o2, flow_out, out_);
+  }
+
+  [[nodiscard]] Line periodic_line(double x0, double x1, Fractions const& s, double side) const {
+    Line line(s.size());
+    for (std::size_t n = 0; n < s.size(); ++n) line[n] = station(x0 + (x1 - x0) * s[n], side);
+    return line;
+  }
+
+  /// The periodics take the mean spacing of both blade sides.
+  void fill_beside_blade(std::array<PieceNodes, n_pieces>& pieces) const {
+    Fractions along = arc_fractions(top_side_);
+    Fractions const along_low = arc_fractions(bottom_side_);
+    for (std::size_t n = 0; n < along.size(); ++n) along[n] = 0.5 * (along[n] + along_low[n]);
+    along = towards_even(along, 0.6);
+    fill(pieces[upper], top_side_, periodic_line(x_up_, x_down_, along, 1), upper_1_, upper_2_);
+    fill(pieces[lower], periodic_line(x_up_, x_down_, along, -1), bottom_side_, lower_1_, lower_2_);
+  }
+
+  /// The inlet itself is straight along theta, as the outlet is.
+  void fill_inlet(std::array<PieceNodes, n_pieces>& pieces) const {
+    double const x = options_.inlet;
+    Point2 const i1 = inlet_up_.front(), i2 = inlet_low_.front();
+    Line const middle = pitch_line(i2, i1, even(le_.size()));
+    Line const up = pitch_line(i1, station(x, 1), towards_even(from_ring_up_, 0.3));
+    Line const low = pitch_line(station(x, -1), i2, towards_even(to_ring_low_, 0.3));
+    fill(pieces[inlet_middle], inlet_low_, inlet_up_, middle, le_);
+    fill(pieces[inlet_upper], inlet_up_, periodic_line(x, x_up_, in_, 1), up, upper_1_);
+    fill(pieces[inlet_lower], periodic_line(x, x_up_, in_, -1), inlet_low_, low, lower_1_);
+  }
+
+  void fill_outlet(std::array<PieceNodes, n_pieces>& pieces) const {
+    double const x = options_.outlet;
+    Point2 const o1 = outlet_up_.back(), o2 = outlet_low_.back();
+    Line const middle = pitch_line(o2, o1, even(te_.size()));
+    Line const up = pitch_line(o1, station(x, 1), towards_even(from_ring_up_, 0.3));
+    Line const low = pitch_line(station(x, -1), o2, towards_even(to_ring_low_, 0.3));
+    fill(pieces[outlet_middle], outlet_low_, outlet_up_, reversed(te_), middle);
+    fill(pieces[outlet_upper], outlet_up_, periodic_line(x_down_, x, out_, 1), upper_2_, up);
+    fill(pieces[outlet_lower], periodic_line(x_down_, x, out_, -1), outlet_low_, lower_2_, low);
+  }
+
+  PassageOptions const& options_;
+  PassageCounts const& counts_;
+  Airfoil airfoil_;
+  BladeSide up_, down_;
+  double half_pitch_;
+  double last_layer_ = 0;                  ///< height of the ring's outermost cells
+  Line le_, top_side_, te_, bottom_side_;  ///< the outer edge of the ring
+  RingCorner leading_upper_, leading_lower_, trailing_upper_, trailing_lower_;
+  double x_up_ = 0, x_down_ = 0;                ///< of the pitchwise edges on the periodics
+  Fractions from_ring_up_, to_ring_low_;        ///< of pitchwise edges
+  Fractions in_, out_;                          ///< of streamwise edges
+  Line upper_1_, upper_2_, lower_1_, lower_2_;  ///< pitchwise edges upstream (1) and downstream (2) of the blade
+  Line inlet_up_, inlet_low_, outlet_up_, outlet_low_;  ///< streamwise edges
+};
+
 }  // namespace
 
 CornerFractions corner_fractions(PassageOptions const& options) {
@@ -165,124 +369,9 @@ SectionMesher::SectionMesher(PassageOptions const& options, PassageCounts const&
 }
 
 std::array<PieceNodes, n_pieces> const& SectionMesher::operator()(double span) {
-  PassageCounts const& c = counts_;
-  Airfoil const airfoil(options_, span);
-  BladeSide const up(airfoil, BladeSide::Side::upper), down(airfoil, BladeSide::Side::lower);
-  double const half_pitch = pi * annulus_.section_radius(span) / options_.blades;
-
-  // Ring: straight normals off the wall.
-  double const thickness = options_.ring_thickness * airfoil.chord();
-  int const n_up = c.leading_upper + c.side + c.trailing_upper, n_down = c.leading_lower + c.side + c.trailing_lower;
-  double const first =
-      std::max(options_.first_cell / options_.ring_thickness, demo::first_of_geometric(c.layers, options_.max_growth));
-  Fractions const off_wall = demo::geometric_spacing(c.layers, first);
-  double const last_layer = thickness * (1 - off_wall[c.layers - 1]);
-  auto const ring = [&](Piece piece, auto phi_of) {
-    PieceNodes& nodes = pieces_[piece];
-    std::vector<double>& places = ring_phi_[piece];
-    places.resize(std::size_t(nodes.ni));
-    for (int i = 0; i < nodes.ni; ++i) {
-      double const phi = places[std::size_t(i)] = phi_of(i);
-      Point2 const wall = airfoil.point(phi), t = unit(airfoil.tangent(phi)), normal{-t.y, t.x};
-      for (int k = 0; k < nodes.nk; ++k) nodes.at(i, k) = wall + (off_wall[k] * thickness) * normal;
-    }
-    Line outer(nodes.ni);
-    for (int i = 0; i < nodes.ni; ++i) outer[i] = nodes.at(i, nodes.nk - 1);
-    return outer;
-  };
-  auto const phi_up = [&](int n) { return up.phi(double(n) / n_up); };
-  // Continues past the trailing edge (n < 0 from there on), so phi stays ascending round the blade.
-  auto const phi_down = [&](int n) { return down.phi(double(n) / n_down); };
-  Line const le = ring(ring_le, [&](int i) {
-    int const n = i - c.leading_lower;
-    return n >= 0 ? phi_up(n) : phi_down(-n);
-  });
-  Line const top_side = ring(ring_upper, [&](int i) { return phi_up(c.leading_upper + i); });
-  Line const te = ring(ring_te, [&](int i) {
-    int const n = i - c.trailing_upper;
-    return n <= 0 ? phi_up(n_up + n) : phi_down(n_down - n);
-  });
-  Line const bottom_side = reversed(ring(ring_lower, [&](int i) { return phi_down(c.leading_lower + c.side - i); }));
-
-  // Corners of the ring: outward normal, the edge towards the periodic and the edge towards inlet or outlet.
-  auto const normal_at = [&](double phi) {
-    Point2 const t = unit(airfoil.tangent(phi));
-    return Point2{-t.y, t.x};
-  };
-  Point2 const c1 = le.back(), c2 = le.front(), c3 = te.front(), c4 = te.back();
-  Point2 const n1 = normal_at(phi_up(c.leading_upper)), n2 = normal_at(phi_down(c.leading_lower));
-  Point2 const n3 = normal_at(phi_up(c.leading_upper + c.side)), n4 = normal_at(phi_down(c.leading_lower + c.side));
-
-  // Pitchwise edges, one upstream and one downstream of the blade, each from periodic to periodic.
-  auto const periodic = [&](double x, double side) { return Point2{x, airfoil.camber(x) + side * half_pitch}; };
-  double const x_up = 0.5 * (c1.x + c2.x), x_down = 0.5 * (c3.x + c4.x);
-  Point2 const u1 = periodic(x_up, 1), l1 = periodic(x_up, -1), u2 = periodic(x_down, 1), l2 = periodic(x_down, -1);
-  Point2 const cross1 = unit((u1 - c1) + (c2 - l1)), cross2 = unit((u2 - c3) + (c4 - l2));
-  Fractions const from_ring_up =
-      demo::geometric_spacing(c.upper, last_layer / (0.5 * (length(u1 - c1) + length(u2 - c3))));
-  Fractions const to_ring_low =
-      reversed(demo::geometric_spacing(c.lower, last_layer / (0.5 * (length(l1 - c2) + length(l2 - c4)))));
-  auto const leaving = [](Point2 rule, Point2 straight) { return unit(unit(rule) + unit(straight)); };
-  Line const upper_1 = curve(c1, leaving(rotated(n1, -30), u1 - c1), u1, cross1, from_ring_up);
-  Line const upper_2 = curve(c3, leaving(rotated(n3, 30), u2 - c3), u2, cross2, from_ring_up);
-  Line const lower_1 = curve(l1, cross1, c2, -1.0 * leaving(rotated(n2, 30), l1 - c2), to_ring_low);
-  Line const lower_2 = curve(l2, cross2, c4, -1.0 * leaving(rotated(n4, -30), l2 - c4), to_ring_low);
-
-  // Streamwise edges from inlet to ring and from ring to outlet.
-  auto const station = [&](double x, double fraction) { return Point2{x, airfoil.camber(x) + fraction * half_pitch}; };
-  Point2 const flow_in = direction(airfoil.inlet_angle()), flow_out = direction(airfoil.outlet_angle());
-  double const share_in_up = 0.15 + 0.5 * c.leading_upper / double(c.leading_upper + c.upper);
-  double const share_in_low = 0.15 + 0.5 * c.leading_lower / double(c.leading_lower + c.lower);
-  double const share_out_up = 0.15 + 0.5 * c.trailing_upper / double(c.trailing_upper + c.upper);
-  double const share_out_low = 0.15 + 0.5 * c.trailing_lower / double(c.trailing_lower + c.lower);
-  double const x_in = options_.inlet, x_out = options_.outlet;
-  Point2 const i1 = station(x_in, share_in_up), i2 = station(x_in, -share_in_low);
-  Point2 const o1 = station(x_out, share_out_up), o2 = station(x_out, -share_out_low);
-  Fractions const in =
-      reversed(demo::geometric_spacing(c.inlet, 1.5 * last_layer / (0.5 * (length(c1 - i1) + length(c2 - i2)))));
-  Fractions const out =
-      demo::geometric_spacing(c.outlet, 1.5 * last_layer / (0.5 * (length(o1 - c3) + length(o2 - c4))));
-  Line const inlet_up = curve(i1, flow_in, c1, -1.0 * leaving(rotated(n1, 30), i1 - c1), in);
-  Line const inlet_low = curve(i2, flow_in, c2, -1.0 * leaving(rotated(n2, -30), i2 - c2), in);
-  Line const outlet_up = curve(c3, leaving(rotated(n3, -30), o1 - c3), o1, flow_out, out);
-  Line const outlet_low = curve(c4, leaving(rotated(n4, 30), o2 - c4), o2, flow_out, out);
-
-  // Periodics: the passage part takes the mean spacing of both blade sides.
-  auto const periodic_line = [&](double x0, double x1, Fractions const& s, double side) {
-    Line line(s.size());
-    for (std::size_t n = 0; n < s.size(); ++n) line[n] = periodic(x0 + (x1 - x0) * s[n], side);
-    return line;
-  };
-  Fractions along = arc_fractions(top_side);
-  Fractions const along_low = arc_fractions(bottom_side);
-  for (std::size_t n = 0; n < along.size(); ++n) along[n] = 0.5 * (along[n] + along_low[n]);
-  along = towards_even(along, 0.6);
-
-  // Inlet and outlet: straight along theta.
-  auto const pitch_line = [](Point2 a, Point2 b, Fractions const& s) {
-    Line line(s.size());
-    for (std::size_t n = 0; n < s.size(); ++n) line[n] = a + s[n] * (b - a);
-    line.back() = b;
-    return line;
-  };
-  auto const even = [](std::size_t nodes) { return towards_even(Fractions(nodes), 0); };
-
-  Line const in_mid = pitch_line(i2, i1, even(le.size()));
-  Line const in_up = pitch_line(i1, station(x_in, 1), towards_even(from_ring_up, 0.3));
-  Line const in_low = pitch_line(station(x_in, -1), i2, towards_even(to_ring_low, 0.3));
-  Line const out_mid = pitch_line(o2, o1, even(te.size()));
-  Line const out_up = pitch_line(o1, station(x_out, 1), towards_even(from_ring_up, 0.3));
-  Line const out_low = pitch_line(station(x_out, -1), o2, towards_even(to_ring_low, 0.3));
-
-  fill(pieces_[upper], top_side, periodic_line(x_up, x_down, along, 1), upper_1, upper_2);
-  fill(pieces_[lower], periodic_line(x_up, x_down, along, -1), bottom_side, lower_1, lower_2);
-  fill(pieces_[inlet_middle], inlet_low, inlet_up, in_mid, le);
-  fill(pieces_[inlet_upper], inlet_up, periodic_line(x_in, x_up, in, 1), in_up, upper_1);
-  fill(pieces_[inlet_lower], periodic_line(x_in, x_up, in, -1), inlet_low, in_low, lower_1);
-  fill(pieces_[outlet_middle], outlet_low, outlet_up, reversed(te), out_mid);
-  fill(pieces_[outlet_upper], outlet_up, periodic_line(x_down, x_out, out, 1), upper_2, out_up);
-  fill(pieces_[outlet_lower], periodic_line(x_down, x_out, out, -1), outlet_low, lower_2, out_low);
-  if (options_.tip != BladeTip::none) fill_tip(options_, airfoil, ring_phi_, pieces_);
+  PassageSection section(options_, counts_, annulus_, span);
+  section.fill_pieces(pieces_, ring_phi_);
+  if (options_.tip != BladeTip::none) fill_tip(options_, section.airfoil(), ring_phi_, pieces_);
   return pieces_;
 }
 

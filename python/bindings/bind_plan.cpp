@@ -100,7 +100,8 @@ class PyPlan {
     return ffd_gradient(*plan_, rule, dJ_db);
   }
 
-  /// Seconds of displacements() as a C++ program calls it, on arrays of its own: what calls from Python are measured against.
+  /// Seconds of displacements() as a C++ program calls it, on arrays of its own: what calls from Python are measured
+  /// against.
   [[nodiscard]] std::vector<double> native_times(int repeats) const {
     Call const call;
     Kokkos::View<double* [3], Kokkos::LayoutRight, Memory> const u("gridmorph::python::u", std::size_t(n_boundary()));
@@ -211,28 +212,27 @@ void check_boundary(PyPlan const& plan, std::optional<Vectors> const& u) {
   check_finite(*u, "u");
 }
 
-}  // namespace
+using PlanClass = nb::class_<PyPlan>;
 
-void bind_plan(nb::module_& m) {
-  nb::class_<PyPlan>(m, "Plan",
-                     "How the nodes of a mesh follow its boundary: made once, applied many times.\n\n"
-                     "u, rate and what transpose() returns have one row for each of boundary_nodes; u absent: what the "
-                     "rules say. Other arrays have one "
-                     "row per node of the mesh. float64 or float32, (n, 3), any positive strides, read in place; "
-                     "results are float64, new or in `out`.")
-      .def(
-          "__init__",
-          [](PyPlan* self, PyMesh const& mesh, PyMotion const& motion, bool freeze_guard) {
-            new (self) PyPlan(mesh, motion, freeze_guard);
-            if (self->warning().empty() || PyErr_WarnEx(PyExc_UserWarning, self->warning().c_str(), 1) == 0) return;
-            self->~PyPlan();
-            throw nb::python_error();
-          },
-          nb::arg("mesh"), nb::arg("motion"), nb::kw_only(), nb::arg("freeze_guard") = false,
-           "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError; warns "
-           "where prescribed patches end on others that no rule names.\n\n"
-           "freeze_guard: what smoothing does to the rules' morph becomes a linear part of all morphs.")
-      .def_prop_ro("n_nodes", &PyPlan::n_nodes)
+/// Binds how a plan is made.
+void bind_construction(PlanClass& plan) {
+  plan.def(
+      "__init__",
+      [](PyPlan* self, PyMesh const& mesh, PyMotion const& motion, bool freeze_guard) {
+        new (self) PyPlan(mesh, motion, freeze_guard);
+        if (self->warning().empty() || PyErr_WarnEx(PyExc_UserWarning, self->warning().c_str(), 1) == 0) return;
+        self->~PyPlan();
+        throw nb::python_error();
+      },
+      nb::arg("mesh"), nb::arg("motion"), nb::kw_only(), nb::arg("freeze_guard") = false,
+      "Connects the zones, checks boundary and rules, plans. Raises MeshError, MotionError, PlanError; warns "
+      "where prescribed patches end on others that no rule names.\n\n"
+      "freeze_guard: what smoothing does to the rules' morph becomes a linear part of all morphs.");
+}
+
+/// Binds the nodes whose displacement is given, and what the rules say of them.
+void bind_boundary(PlanClass& plan) {
+  plan.def_prop_ro("n_nodes", &PyPlan::n_nodes)
       .def(
           "_native_times", [](PyPlan const& p, int repeats) { return new_numbers(p.native_times(repeats)); },
           nb::arg("repeats"))
@@ -255,8 +255,12 @@ void bind_plan(nb::module_& m) {
       .def(
           "boundary_displacement_of", [](PyPlan const& p, PyMotion const& motion) { return as_array(p.rules(motion)); },
           nb::arg("motion"),
-          "(m, 3): what other rules of the same patches give them. Nothing is planned. Raises MotionError.")
-      .def(
+          "(m, 3): what other rules of the same patches give them. Nothing is planned. Raises MotionError.");
+}
+
+/// Binds what follows from displacements of the boundary.
+void bind_morphs(PlanClass& plan) {
+  plan.def(
           "positions",
           [](PyPlan& p, std::optional<Vectors> u, std::optional<Vectors> out) {
             check_boundary(p, u);
@@ -286,8 +290,12 @@ void bind_plan(nb::module_& m) {
           nb::arg("rate"), nb::arg("u").none() = nb::none(), nb::kw_only(), nb::arg("out").none() = nb::none(),
           nb::sig("def velocities(self, rate: numpy.typing.ArrayLike, u: numpy.typing.ArrayLike | None = None, *, out: "
                   "numpy.typing.ArrayLike | None = None) -> numpy.typing.NDArray[numpy.float64]"),
-          "(n, 3): derivative of displacements() at u in the direction `rate` [length / time], exact.")
-      .def(
+          "(n, 3): derivative of displacements() at u in the direction `rate` [length / time], exact.");
+}
+
+/// Binds derivatives backwards: from nodes to the boundary and on to control points.
+void bind_gradients(PlanClass& plan) {
+  plan.def(
           "transpose",
           [](PyPlan& p, Vectors gradient, std::optional<Vectors> u, std::optional<Vectors> out) {
             check_boundary(p, u);
@@ -311,6 +319,21 @@ void bind_plan(nb::module_& m) {
           "(m, 3) as transpose() returns it. i fastest: .reshape(n_k, n_j, n_i, 3).\n\n"
           "Exact, as u is linear in d; zero for control points that a face of the lattice holds. Raises ConfigError "
           "where the rule is no ffd rule.");
+}
+
+}  // namespace
+
+void bind_plan(nb::module_& m) {
+  PlanClass plan(m, "Plan",
+                 "How the nodes of a mesh follow its boundary: made once, applied many times.\n\n"
+                 "u, rate and what transpose() returns have one row for each of boundary_nodes; u absent: what the "
+                 "rules say. Other arrays have one "
+                 "row per node of the mesh. float64 or float32, (n, 3), any positive strides, read in place; "
+                 "results are float64, new or in `out`.");
+  bind_construction(plan);
+  bind_boundary(plan);
+  bind_morphs(plan);
+  bind_gradients(plan);
 }
 
 }  // namespace gridmorph::python

@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/detail/plausible_periodic.hpp>
+#include <gridmorph/boundary/detail/periodic_faces.hpp>
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

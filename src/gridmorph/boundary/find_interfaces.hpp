@@ -30,7 +30,7 @@ struct FoundInterfaces {
 /// Periodicity: the corners of what is still open propose translations, then rotations (from the largest piece around
 /// them that is congruent cell by cell, fitted by least squares); a proposal is a remark, or a pair where it is
 /// plausible for a machine: whole, sizeable sides at the two ends of the passage, a whole number of sectors about one
-/// axis, no translation between planes while other faces are open (the rules are in detail/plausible_periodic.hpp). Two
+/// axis, no translation between planes while other faces are open (the rules are in detail/periodic_faces.hpp). Two
 /// planes of a mesh of one cell layer are never taken as periodic. Where a rotation is taken, translations are not.
 ///
 /// Cost: O(surface cells) for interfaces, the same again for each proposal that is tried.

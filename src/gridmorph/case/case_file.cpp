@@ -1,10 +1,8 @@
 #include <gridmorph/case/case_file.hpp>
+#include <gridmorph/case/detail/case_parts.hpp>
 #include <gridmorph/case/detail/law_reader.hpp>
-#include <gridmorph/case/detail/near_field_reader.hpp>
-#include <gridmorph/case/detail/region_reader.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/table_reader.hpp>
-#include <gridmorph/case/detail/wheel_reader.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/suggest.hpp>
 #include <gridmorph/mapping/text_table.hpp>

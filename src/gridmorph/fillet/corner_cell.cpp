@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/corner_cell.hpp>
+#include <gridmorph/fillet/mitre_path.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/cut_corners.hpp>
+#include <gridmorph/fillet/corners.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>

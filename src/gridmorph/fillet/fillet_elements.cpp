@@ -4,8 +4,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/fillet/arc_patches.hpp>
 #include <gridmorph/fillet/corner_lines.hpp>
-#include <gridmorph/fillet/cut_corners.hpp>
-#include <gridmorph/fillet/rounded_corner.hpp>
+#include <gridmorph/fillet/corners.hpp>
 #include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 

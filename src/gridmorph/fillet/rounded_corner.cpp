@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/rounded_corner.hpp>
+#include <gridmorph/fillet/corners.hpp>
 
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/geometry/unit.hpp>

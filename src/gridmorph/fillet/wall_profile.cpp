@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/wall_profile.hpp>
+#include <gridmorph/fillet/root_section.hpp>
 
 #include <gridmorph/geometry/unit.hpp>
 

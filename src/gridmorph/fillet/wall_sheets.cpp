@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/wall_sheets.hpp>
+#include <gridmorph/fillet/split_mesh.hpp>
 
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>

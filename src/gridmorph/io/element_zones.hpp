@@ -1,19 +1,40 @@
-// Zones of elements, one by one into a CGNS file. Internal to io.
+// Zones of elements, one by one into a CGNS file, by their faces where they have to be. Internal to io.
 #pragma once
 
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/io/zone_faces.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace gridmorph::io {
+
+/// The elements of a zone by their faces, each face once: what NGON_n and NFACE_n sections hold.
+class ZoneFaces {
+ public:
+  /// Corners alone: nodes amid the edges of second-order elements are on no face. Faces are numbered in the order of
+  /// the elements that have them first, their nodes as these see them from outside. Throws MeshError for a face of more
+  /// than two elements. Cost O(n log n) in faces.
+  ZoneFaces(Mesh const& mesh, Zone const& zone);
+
+  /// Nodes of the mesh around each face.
+  [[nodiscard]] CsrGraph const& faces() const { return faces_; }
+  /// Faces of each element of the zone, from 1 on; negative where the normal points into it.
+  [[nodiscard]] CsrGraph const& elements() const { return elements_; }
+  /// The face with these nodes in any order; -1 where there is none.
+  [[nodiscard]] Index find(std::span<Index32 const> nodes) const;
+
+ private:
+  CsrGraph faces_, elements_;
+  std::vector<std::pair<std::uint64_t, Index32>> by_key_;  ///< sorted
+};
 
 /// Writes the zones of a mesh with their elements, patches and connections. Nodes, elements, faces and connections of a
 /// zone are numbered from its first node and first element on; zones may share them, as the copies of a passage in a

@@ -5,9 +5,9 @@
 #include <gridmorph/io/foam/foam_mesh.hpp>
 #include <gridmorph/io/gmsh/gmsh_mesh.hpp>
 #include <gridmorph/io/mesh_files.hpp>
-#include <gridmorph/io/mesh_names.hpp>
 #include <gridmorph/io/morphed_file.hpp>
 #include <gridmorph/io/plot3d/plot3d.hpp>
+#include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/su2/su2_file.hpp>
 #include <gridmorph/io/ugrid/ugrid_file.hpp>
@@ -15,8 +15,10 @@
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
 #include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/mesh/middle_pairs.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -24,9 +26,46 @@
 
 namespace gridmorph {
 
-std::string_view to_string(FileFormat format) { return format == FileFormat::cgns_hdf5 ? "CGNS/HDF5" : "CGNS/ADF"; }
-
 namespace {
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+bool has_control(std::string const& name) { return std::any_of(name.begin(), name.end(), is_control); }
+
+/// Control characters in names of patches, families, connections and subsets become '?', with a note: on a terminal a
+/// line feed in a name would begin a line of its own that looks like one of ours. Throws IoError for zones named so,
+/// which writers find by their name.
+void make_names_printable(Mesh& mesh) {
+  for (Zone const& zone : mesh.zones)
+    if (has_control(zone.name))
+      throw IoError(mesh.source + ": the name of zone '" + io::printable(zone.name) +
+                    "' holds control characters, shown as '?'; rename the zone");
+  Index changed = 0;
+  auto const make = [&](std::string& name) {
+    if (!has_control(name)) return;
+    std::replace_if(name.begin(), name.end(), is_control, '?');
+    ++changed;
+  };
+  for (Patch& patch : mesh.patches) {
+    make(patch.name);
+    make(patch.bc_type);
+    for (auto& family : patch.families) make(family);
+  }
+  for (auto& interface : mesh.interfaces) {
+    make(interface.name);
+    for (auto& family : interface.families) make(family);
+  }
+  for (auto& connection : mesh.connections) {
+    make(connection.name);
+    for (auto& family : connection.families) make(family);
+  }
+  for (auto& family : mesh.families) make(family);
+  for (Subset& subset : mesh.subsets) make(subset.name);
+  if (changed > 0)
+    mesh.notes.push_back(mesh.source + ": " + std::to_string(changed) +
+                         " names hold control characters, such as line feeds; they stand as '?' here, and a case file "
+                         "names them so");
+}
 
 /// The kind of mesh in a CGNS file: unstructured where one zone is.
 MeshKind kind_of(cgns::File const& file, cgns::Node const& tree, std::vector<std::string> const& leave_out) {
@@ -71,10 +110,6 @@ Mesh read_as_named(std::string const& path, ReadOptions const& options) {
                                                                         : io::read_elements(file, tree, options);
 }
 
-}  // namespace
-
-namespace {
-
 /// Files that a mesh consists of beside the one that is named, but for those of links.
 std::vector<std::string> other_files(std::string const& path, MeshFormat format) {
   std::vector<std::filesystem::path> files;
@@ -93,6 +128,8 @@ std::vector<std::string> other_files(std::string const& path, MeshFormat format)
 }
 
 }  // namespace
+
+std::string_view to_string(FileFormat format) { return format == FileFormat::cgns_hdf5 ? "CGNS/HDF5" : "CGNS/ADF"; }
 
 MeshFileFacts look_at_mesh(std::string const& path, std::vector<std::string> const& leave_out) {
   MeshFileFacts out;
@@ -134,7 +171,7 @@ MeshKind mesh_kind(std::string const& path, std::vector<std::string> const& leav
 
 Mesh read_mesh(std::string const& path, ReadOptions const& options) {
   Mesh mesh = read_as_named(path, options);
-  io::make_names_printable(mesh);
+  make_names_printable(mesh);
   if (Index const unused = leave_out_unused_nodes(mesh); unused > 0)
     mesh.notes.push_back(path + ": " + std::to_string(unused) + (unused == 1 ? " node belongs" : " nodes belong") +
                          " to no element of the mesh and " +

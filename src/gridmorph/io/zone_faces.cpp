@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/zone_faces.hpp>
+#include <gridmorph/io/element_zones.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/mapping/detail/merge_nodes.hpp>
+#include <gridmorph/mapping/detail/point_clouds.hpp>
 #include <gridmorph/mapping/facet_map.hpp>
 #include <gridmorph/mapping/point_field.hpp>
 #include <gridmorph/mapping/point_map.hpp>

@@ -1,7 +1,6 @@
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/mapping/detail/hull_distance.hpp>
-#include <gridmorph/mapping/detail/point_levels.hpp>
+#include <gridmorph/mapping/detail/point_clouds.hpp>
 #include <gridmorph/mapping/point_map.hpp>
 
 #include <algorithm>

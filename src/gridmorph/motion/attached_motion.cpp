@@ -1,4 +1,4 @@
-#include <gridmorph/motion/attached_motion.hpp>
+#include <gridmorph/motion/along_walls.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

@@ -3,18 +3,16 @@
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/motion/attached_motion.hpp>
-#include <gridmorph/motion/carry/carrying_wall.hpp>
+#include <gridmorph/motion/along_walls.hpp>
+#include <gridmorph/motion/carry/carried_features.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
-#include <gridmorph/motion/end_walls/wall_shift.hpp>
+#include <gridmorph/motion/end_walls/extended_blades.hpp>
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
 #include <gridmorph/motion/inflation/inflate_motion.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
-#include <gridmorph/motion/shock/shock_motion.hpp>
 #include <gridmorph/motion/target/target_motion.hpp>
 #include <gridmorph/motion/turbomachinery/row_motion.hpp>
 #include <gridmorph/motion/turbomachinery/section_motion.hpp>
-#include <gridmorph/motion/wake/wake_motion.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,6 @@
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/motion/boundary_requests.hpp>
 #include <gridmorph/motion/disagreements.hpp>
-#include <gridmorph/motion/torn_copies.hpp>
 
 #include <algorithm>
 #include <cmath>

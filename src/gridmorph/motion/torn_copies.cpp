@@ -1,5 +1,5 @@
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/motion/torn_copies.hpp>
+#include <gridmorph/motion/disagreements.hpp>
 
 #include <cmath>
 #include <numbers>

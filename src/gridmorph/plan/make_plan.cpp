@@ -3,12 +3,10 @@
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/blocks/boundary.hpp>
+#include <gridmorph/plan/blocks/boundary_facts.hpp>
 #include <gridmorph/plan/blocks/chain_laws.hpp>
 #include <gridmorph/plan/blocks/independent_chains.hpp>
-#include <gridmorph/plan/blocks/loose_nodes.hpp>
 #include <gridmorph/plan/blocks/plan_basis.hpp>
-#include <gridmorph/plan/blocks/poles.hpp>
-#include <gridmorph/plan/blocks/ranked_kinds.hpp>
 #include <gridmorph/plan/blocks/spread_plan.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/detail/congruent_piece.hpp>
+#include <gridmorph/boundary/detail/periodic_faces.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/detail/plausible_periodic.hpp>
+#include <gridmorph/boundary/detail/periodic_faces.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/detail/propose_periodic.hpp>
+#include <gridmorph/boundary/detail/periodic_faces.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 

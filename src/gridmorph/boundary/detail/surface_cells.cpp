@@ -1,4 +1,4 @@
-#include <gridmorph/boundary/detail/surface_cells.hpp>
+#include <gridmorph/boundary/detail/match_cells.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/bulb_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/bulbs.hpp>

@@ -1,5 +1,5 @@
-#include <gridmorph/case/detail/ffd_reader.hpp>
 #include <gridmorph/case/detail/number_table.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/toml.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/suggest.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/field_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/formula.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mapping/inverse_field.hpp>
@@ -259,100 +259,141 @@ TimedRule modal_rule(TableReader& table, CaseFile& out, FieldOptions const& opti
   return rule;
 }
 
-/// Points have no surface that an offset could turn with. `first`: of the rule's fields.
-void refuse_offset_of_points(TableReader& table, CaseFile const& out, std::size_t first) {
-  if (!table.has("offset") || first == out.fields.size()) return;
-  for (std::size_t f = first; f < out.fields.size(); ++f)
-    if (out.fields[f].field->n_elements() > 0) return;
-  table.problem("offset", "is for models with elements, and this one has points alone; add elements or remove it");
+/// The rule of a model by itself. `source`: its file, as the case file names it.
+TimedRule single_rule(std::string const& source, std::shared_ptr<PointField const> const& field,
+                      std::shared_ptr<InverseField const> const& inverse) {
+  std::string const description =
+      fmt::format("field {} ({} points{})", source, field->size(),
+                  field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : "");
+  TimedRule rule;
+  if (inverse) {
+    rule.at = [field, inverse, description](double share, Moment const&) {
+      return FunctionRule{
+          description + ", taken back", [field, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
+            (*inverse)(
+                [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
+                  constexpr double all = 1;
+                  field->evaluate({&all, 1}, places, there, iterates);
+                },
+                share, points, u,
+                [&](std::span<Vec3 const> places, std::span<Vec3 const> anchors, std::span<Vec3> there) {
+                  constexpr double all = 1;
+                  field->held({&all, 1}, places, anchors, there);
+                });
+          }};
+    };
+    return rule;
+  }
+  rule.at = [field, description](double share, Moment const&) {
+    return shared_field(description, share,
+                        [field](std::span<Vec3 const> points, std::span<Vec3> u) { (*field)(points, u); });
+  };
+  return rule;
 }
+
+/// Reads the keys of one rule and its models, and makes it of them: of `file` alone, or of a sum of that, modes and
+/// loads.
+class FieldReader {
+ public:
+  FieldReader(TableReader& table, RuleContext const& shared, CaseFile& out)
+      : table_(table), shared_(shared), out_(out), first_field_(out.fields.size()) {}
+
+  TimedRule run() {
+    options_ = read_options(table_);
+    placement_ = read_placement(table_, shared_);
+    inverse_ = read_inverse(table_);
+    elements_ = table_.string("elements");
+    auto const solution = table_.string("solution");
+    read_modes();
+    read_loads();
+    is_sum_ = table_.has("modes") || table_.has("loads");
+    if (!is_sum_) table_.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
+    file_ = table_.string("file");
+    model_ = read_model(table_, elements_, solution);
+    if (!good_ || (!model_ && (file_ || !is_sum_))) return {};
+    place();
+    try {
+      TimedRule rule = make();
+      refuse_offset_of_points();
+      return rule;
+    } catch (Error const& e) {
+      table_.problem("file", e.what());
+      return {};
+    }
+  }
+
+ private:
+  void read_modes() {
+    double const* const period = out_.sequence ? &out_.sequence->period : nullptr;
+    for (auto& mode_table : table_.tables("modes")) {
+      auto mode = read_mode(mode_table, elements_, period);
+      good_ = good_ && mode;
+      if (mode) modes_.push_back(std::move(*mode));
+    }
+    if (table_.has("modes") && good_ && modes_.empty()) {
+      table_.problem("modes", "the list is empty; give { file = \"mode_1.csv\" } or remove it");
+      good_ = false;
+    }
+  }
+
+  void read_loads() {
+    for (auto& load_table : table_.tables("loads")) {
+      auto load = read_load(load_table, shared_, elements_);
+      good_ = good_ && load;
+      if (load) loads_.push_back(std::move(*load));
+    }
+    if (table_.has("loads") && good_ && loads_.empty()) {
+      table_.problem("loads", "the list is empty; give { file = \"speed.csv\", factor = 1 } or remove it");
+      good_ = false;
+    }
+  }
+
+  void place() {
+    std::vector<StructuralModel*> others;
+    for (Mode& mode : modes_) others.push_back(&mode.model);
+    for (Load& load : loads_) others.push_back(&load.model);
+    place_models(table_, placement_, options_.length_scale, model_ ? &*model_ : nullptr, others);
+  }
+
+  TimedRule make() {
+    if (is_sum_)
+      return modal_rule(table_, out_, options_, std::move(model_), std::move(modes_), std::move(loads_), inverse_);
+    if (!model_->nodes.imaginary.empty())
+      model_->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file_));
+    auto const field = std::make_shared<PointField const>(std::move(*model_), options_);
+    auto const inverse = make_inverse(inverse_, field->source(), field->coincidence());
+    out_.fields.push_back({table_.context().where(table_.line()), field, inverse});
+    return single_rule(*file_, field, inverse);
+  }
+
+  /// Points have no surface that an offset could turn with.
+  void refuse_offset_of_points() {
+    if (!table_.has("offset") || first_field_ == out_.fields.size()) return;
+    for (std::size_t f = first_field_; f < out_.fields.size(); ++f)
+      if (out_.fields[f].field->n_elements() > 0) return;
+    table_.problem("offset", "is for models with elements, and this one has points alone; add elements or remove it");
+  }
+
+  TableReader& table_;
+  RuleContext const& shared_;
+  CaseFile& out_;
+  std::size_t first_field_;  ///< of this rule, in CaseFile::fields
+  FieldOptions options_;
+  Placement placement_;
+  std::optional<InverseOptions> inverse_;
+  std::optional<std::string> elements_;  ///< of all models that name none of their own
+  std::optional<std::string> file_;
+  std::optional<StructuralModel> model_;  ///< of `file`
+  std::vector<Mode> modes_;
+  std::vector<Load> loads_;
+  bool is_sum_ = false;
+  bool good_ = true;  ///< whether modes and loads could be read
+};
 
 }  // namespace
 
 TimedRule read_field(TableReader& table, RuleContext const& shared, CaseFile& out) {
-  std::size_t const first_field = out.fields.size();
-  FieldOptions const options = read_options(table);
-  Placement const placement = read_placement(table, shared);
-  auto const inverse_options = read_inverse(table);
-  auto const elements = table.string("elements");
-  auto const solution = table.string("solution");
-  double const* const period = out.sequence ? &out.sequence->period : nullptr;
-  bool const has_modes = table.has("modes");
-  std::vector<Mode> modes;
-  bool good = true;
-  for (auto& mode_table : table.tables("modes")) {
-    auto mode = read_mode(mode_table, elements, period);
-    good = good && mode;
-    if (mode) modes.push_back(std::move(*mode));
-  }
-  if (has_modes && good && modes.empty()) {
-    table.problem("modes", "the list is empty; give { file = \"mode_1.csv\" } or remove it");
-    good = false;
-  }
-  bool const has_loads = table.has("loads");
-  std::vector<Load> loads;
-  for (auto& load_table : table.tables("loads")) {
-    auto load = read_load(load_table, shared, elements);
-    good = good && load;
-    if (load) loads.push_back(std::move(*load));
-  }
-  if (has_loads && good && loads.empty()) {
-    table.problem("loads", "the list is empty; give { file = \"speed.csv\", factor = 1 } or remove it");
-    good = false;
-  }
-  bool const is_sum = has_modes || has_loads;
-  if (!is_sum) table.require("file", "file = \"displacement.csv\" (columns x,y,z,dx,dy,dz)");
-  auto const file = table.string("file");
-  auto model = read_model(table, elements, solution);
-  if (!good || (!model && (file || !is_sum))) return {};
-  std::vector<StructuralModel*> others;
-  for (Mode& mode : modes) others.push_back(&mode.model);
-  for (Load& load : loads) others.push_back(&load.model);
-  place_models(table, placement, options.length_scale, model ? &*model : nullptr, others);
-  try {
-    if (is_sum) {
-      TimedRule rule =
-          modal_rule(table, out, options, std::move(model), std::move(modes), std::move(loads), inverse_options);
-      refuse_offset_of_points(table, out, first_field);
-      return rule;
-    }
-    if (!model->nodes.imaginary.empty())
-      model->notes.push_back(fmt::format("{}: the imaginary part is not used; name the file in modes", *file));
-    auto const field = std::make_shared<PointField const>(std::move(*model), options);
-    auto const inverse = make_inverse(inverse_options, field->source(), field->coincidence());
-    out.fields.push_back({table.context().where(table.line()), field, inverse});
-    refuse_offset_of_points(table, out, first_field);
-    std::string const description =
-        fmt::format("field {} ({} points{})", *file, field->size(),
-                    field->n_elements() > 0 ? fmt::format(", {} elements", field->n_elements()) : "");
-    TimedRule rule;
-    if (inverse) {
-      rule.at = [field, inverse, description](double share, Moment const&) {
-        return FunctionRule{
-            description + ", taken back", [field, inverse, share](std::span<Vec3 const> points, std::span<Vec3> u) {
-              (*inverse)(
-                  [&](std::span<Vec3 const> places, std::span<Vec3> there, bool iterates) {
-                    constexpr double all = 1;
-                    field->evaluate({&all, 1}, places, there, iterates);
-                  },
-                  share, points, u,
-                  [&](std::span<Vec3 const> places, std::span<Vec3 const> anchors, std::span<Vec3> there) {
-                    constexpr double all = 1;
-                    field->held({&all, 1}, places, anchors, there);
-                  });
-            }};
-      };
-      return rule;
-    }
-    rule.at = [field, description](double share, Moment const&) {
-      return shared_field(description, share,
-                          [field](std::span<Vec3 const> points, std::span<Vec3> u) { (*field)(points, u); });
-    };
-    return rule;
-  } catch (Error const& e) {
-    table.problem("file", e.what());
-    return {};
-  }
+  return FieldReader(table, shared, out).run();
 }
 
 }  // namespace gridmorph::casefile

@@ -1,5 +1,5 @@
+#include <gridmorph/case/detail/case_parts.hpp>
 #include <gridmorph/case/detail/law_reader.hpp>
-#include <gridmorph/case/detail/near_field_reader.hpp>
 
 #include <fmt/format.h>
 

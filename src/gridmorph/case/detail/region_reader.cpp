@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/region_reader.hpp>
+#include <gridmorph/case/detail/case_parts.hpp>
 
 #include <gridmorph/case/detail/sections_reader.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>

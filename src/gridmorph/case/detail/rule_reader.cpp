@@ -1,17 +1,13 @@
-#include <gridmorph/case/detail/bulb_reader.hpp>
-#include <gridmorph/case/detail/ffd_reader.hpp>
-#include <gridmorph/case/detail/field_reader.hpp>
 #include <gridmorph/case/detail/inflate_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>
-#include <gridmorph/case/detail/target_reader.hpp>
 #include <gridmorph/case/formula.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/suggest.hpp>
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/contour.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
-#include <gridmorph/motion/section_share.hpp>
 
 #include <fmt/format.h>
 

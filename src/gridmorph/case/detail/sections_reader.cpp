@@ -231,4 +231,11 @@ SectionsRule read_sections(TableReader& table, bool has_axis) {
   return rule;
 }
 
+SectionsRule share_of(SectionsRule rule, double share) {
+  for (SpanwiseTable* table : {&rule.chord, &rule.scale, &rule.thickness, &rule.twist_rad, &rule.stagger_rad,
+                               &rule.sweep, &rule.lean, &rule.bow_rad})
+    for (auto& [span, value] : table->stations) value *= share;
+  return rule;
+}
+
 }  // namespace gridmorph::casefile

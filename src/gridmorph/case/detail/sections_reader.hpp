@@ -16,6 +16,10 @@ namespace gridmorph::casefile {
 /// which blades need and which makes them the default.
 SectionsRule read_sections(TableReader& table, bool has_axis);
 
+/// The redesign of a rule with the values of all its tables times `share`: half of a chord that is 10 % shorter is one
+/// that is 5 % shorter, half of a twist a twist by half the angle. resolve() refuses values beyond their limits.
+SectionsRule share_of(SectionsRule rule, double share);
+
 /// The keys that say what sections are of: kind, span and flow.
 void read_section_search(TableReader& table, bool has_axis, SectionsRule& rule);
 

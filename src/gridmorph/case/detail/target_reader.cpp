@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/target_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/target_file.hpp>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include <gridmorph/case/detail/wheel_reader.hpp>
+#include <gridmorph/case/detail/case_parts.hpp>
 #include <gridmorph/core/suggest.hpp>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include <gridmorph/io/cgns/cgns_polyhedra.hpp>
+#include <gridmorph/io/cgns/cgns_sections.hpp>
 #include <gridmorph/io/polyhedron.hpp>
 
 #include <algorithm>

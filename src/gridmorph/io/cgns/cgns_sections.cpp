@@ -1,4 +1,3 @@
-#include <gridmorph/io/cgns/cgns_polyhedra.hpp>
 #include <gridmorph/io/cgns/cgns_sections.hpp>
 
 #include <algorithm>

@@ -84,4 +84,9 @@ struct ListedFaces {
 ListedFaces add_elements(std::vector<Section> const& sections, std::string const& where, Mesh& mesh,
                          Problems& problems);
 
+/// Appends the volume elements that the sections describe by faces. Those with the faces of a tetrahedron, pyramid,
+/// prism or hexahedron become one, in SIDS order; the others become polyhedra.
+void add_polyhedra(std::vector<Section> const& sections, ListedFaces const& faces, std::string const& where, Mesh& mesh,
+                   Problems& problems);
+
 }  // namespace gridmorph::cgns

@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/blanks.hpp>
-#include <gridmorph/io/gmsh/gmsh_text.hpp>
+#include <gridmorph/io/gmsh/gmsh_file.hpp>
 #include <gridmorph/io/printable.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/io/real_text.hpp>

@@ -178,96 +178,143 @@ std::vector<Segment> from_planes(std::vector<std::vector<Segment>> const& planes
   return out;
 }
 
-void try_unformatted(Bytes& file, int marker, bool big_endian, Stated const& stated, std::vector<Candidate>& out) {
-  Candidate c;
-  auto& v = c.layout.variant;
-  v.storage = Storage::unformatted;
-  v.marker_bytes = marker;
-  v.big_endian = big_endian;
-  Records const records = walk_records(file, marker, big_endian);
-  if (records.all.empty()) return;
-  auto const give_up = [&](int agreement, std::string why) {
-    c.agreement = agreement;
-    c.why = std::move(why);
-    out.push_back(c);
-  };
+/// Tries a file of Fortran records with markers of one kind. Each step returns whether the next one makes sense; where
+/// it does not, the candidate says why, unless nothing in the file speaks for a PLOT3D file.
+class UnformattedTrial {
+ public:
+  UnformattedTrial(Bytes& file, int marker, bool big_endian, Stated const& stated)
+      : file_(file), big_endian_(big_endian), stated_(stated), records_(walk_records(file, marker, big_endian)) {
+    variant().storage = Storage::unformatted;
+    variant().marker_bytes = marker;
+    variant().big_endian = big_endian;
+  }
 
-  // Header: [number of zones] and the extents.
-  std::uint64_t const first = records.size(0);
-  v.multi_block = first == 4;
-  std::vector<std::int64_t> sizes;
-  std::size_t header = 1;
-  if (v.multi_block) {
-    auto const count = integers(file, records.all[0], 1, big_endian);
+  void run(std::vector<Candidate>& out) {
+    if (records_.all.empty()) return;
+    candidate_.fits = read_header() && take_extents() && count_records() && take_coordinates();
+    if (candidate_.fits || candidate_.agreement > 0) out.push_back(std::move(candidate_));
+  }
+
+ private:
+  Variant& variant() { return candidate_.layout.variant; }
+  std::vector<ZoneData>& zones() { return candidate_.layout.zones; }
+
+  bool give_up(int agreement, std::string why) {
+    candidate_.agreement = agreement;
+    candidate_.why = std::move(why);
+    return false;
+  }
+
+  /// Header: [number of zones] and the extents.
+  bool read_header() {
+    std::uint64_t const first = records_.size(0);
+    variant().multi_block = first == 4;
+    if (variant().multi_block) return read_many_extents();
+    if (first != 8 && first != 12) return false;  // any file of Fortran records
+    variant().dimensions = int(first / 4);
+    auto const all = integers(file_, records_.all[0], first / 4, big_endian_);
+    if (!all) return false;
+    sizes_ = *all;
+    return true;
+  }
+
+  bool read_many_extents() {
+    auto const count = integers(file_, records_.all[0], 1, big_endian_);
     if (!count || count->front() < 1 || count->front() > most_zones)
       return give_up(1, "its first record says that it has " + std::to_string(count ? count->front() : 0) + " zones");
-    if (records.all.size() < 2)
-      return give_up(1, records.broken.value_or("it has no record with the extents of the zones"));
-    std::uint64_t const second = records.size(1), n = std::uint64_t(count->front());
-    v.dimensions = second == 8 * n ? 2 : 3;
-    if (second != 4 * n * std::uint64_t(v.dimensions))
+    if (records_.all.size() < 2)
+      return give_up(1, records_.broken.value_or("it has no record with the extents of the zones"));
+    std::uint64_t const second = records_.size(1), n = std::uint64_t(count->front());
+    variant().dimensions = second == 8 * n ? 2 : 3;
+    if (second != 4 * n * std::uint64_t(variant().dimensions))
       return give_up(
           1, "the record with the extents of " + std::to_string(n) + " zones has " + std::to_string(second) + " bytes");
-    auto const all = integers(file, records.all[1], second / 4, big_endian);
+    auto const all = integers(file_, records_.all[1], second / 4, big_endian_);
     if (!all) return give_up(1, "the extents of its zones cannot be read");
-    sizes = *all;
-    header = 2;
-  } else if (first == 8 || first == 12) {
-    v.dimensions = int(first / 4);
-    auto const all = integers(file, records.all[0], first / 4, big_endian);
-    if (!all) return;
-    sizes = *all;
-  } else {
-    return;  // any file of Fortran records
+    sizes_ = *all;
+    header_ = 2;
+    return true;
   }
-  auto zones = zones_of(sizes, v.dimensions, file.size());
-  if (!zones) return give_up(1, "the extents of its zones are not those of a file of this size");
-  c.layout.zones = std::move(*zones);
 
-  if (records.broken) return give_up(3, *records.broken + " (" + extents_text(c.layout.zones) + ")");
-  std::size_t const found = records.all.size() - header;
-  std::size_t planes = 0;
-  for (auto const& zone : c.layout.zones) planes += std::size_t(zone.extent[2]);
-  v.planes = found == planes && (found != c.layout.zones.size() || stated.planes.value_or(false));
-  if (found != (v.planes ? planes : c.layout.zones.size()))
+  bool take_extents() {
+    auto found = zones_of(sizes_, variant().dimensions, file_.size());
+    if (!found) return give_up(1, "the extents of its zones are not those of a file of this size");
+    zones() = std::move(*found);
+    if (records_.broken) return give_up(3, *records_.broken + " (" + extents_text(zones()) + ")");
+    return true;
+  }
+
+  /// There is one record for each zone, or for each plane of one.
+  bool count_records() {
+    std::size_t const found = records_.all.size() - header_;
+    std::size_t planes = 0;
+    for (auto const& zone : zones()) planes += std::size_t(zone.extent[2]);
+    variant().planes = found == planes && (found != zones().size() || stated_.planes.value_or(false));
+    if (found == (variant().planes ? planes : zones().size())) return true;
     return give_up(2, "it has " + std::to_string(found) + " records of coordinates for " +
-                          std::to_string(c.layout.zones.size()) + " zones with " + std::to_string(planes) +
+                          std::to_string(zones().size()) + " zones with " + std::to_string(planes) +
                           " planes k; each zone, or each of its planes, must be one record");
-  // The first record says what a node has; the others must agree.
-  auto const n_records = [&](ZoneData const& zone) { return std::size_t(v.planes ? zone.extent[2] : 1); };
-  auto const nodes_of = [&](ZoneData const& zone) { return std::uint64_t(zone.nodes()) / n_records(zone); };
-  std::uint64_t const bytes = records.size(header), nodes = nodes_of(c.layout.zones.front());
-  bool known = false;
-  for (bool const wide : {false, true})
-    for (bool const blank : {false, true}) {
-      Variant tried = v;
-      tried.double_precision = wide;
-      tried.iblank = blank;
-      if (bytes == nodes * std::uint64_t(tried.bytes_per_node())) {
-        v = tried;
+  }
+
+  [[nodiscard]] std::size_t records_of(ZoneData const& zone) const {
+    return std::size_t(candidate_.layout.variant.planes ? zone.extent[2] : 1);
+  }
+  /// Nodes in each record of a zone.
+  [[nodiscard]] std::uint64_t nodes_of(ZoneData const& zone) const {
+    return std::uint64_t(zone.nodes()) / records_of(zone);
+  }
+
+  /// The first record says what a node has. Returns false where that is nothing that nodes have.
+  bool find_contents() {
+    std::uint64_t const bytes = records_.size(header_), nodes = nodes_of(zones().front());
+    Variant const plain = variant();
+    bool known = false;
+    for (bool const wide : {false, true})
+      for (bool const blank : {false, true}) {
+        Variant tried = plain;
+        tried.double_precision = wide;
+        tried.iblank = blank;
+        if (bytes != nodes * std::uint64_t(tried.bytes_per_node())) continue;
+        variant() = tried;
         known = true;
       }
-    }
-  std::size_t record = header;
-  for (std::size_t z = 0; z < c.layout.zones.size(); ++z) {
-    auto& zone = c.layout.zones[z];
-    std::uint64_t const wanted = nodes_of(zone) * std::uint64_t(v.bytes_per_node());
-    std::vector<std::vector<Segment>> parts;
-    for (std::size_t k = 0; k < n_records(zone); ++k, ++record) {
-      if (!known || records.size(record) != wanted)
-        return give_up(3, "the record of " +
-                              (v.planes ? "plane k = " + std::to_string(k + 1) + " of " : std::string()) + "zone " +
-                              std::to_string(z + 1) + " (" + std::to_string(zone.extent[0]) + " x " +
-                              std::to_string(zone.extent[1]) + " x " + std::to_string(zone.extent[2]) + " nodes) has " +
-                              std::to_string(records.size(record)) +
-                              " bytes, which is no whole set of coordinates, with or without iblank");
-      parts.push_back(records.all[record]);
-    }
-    zone.segments = v.planes ? from_planes(parts, nodes_of(zone), v) : std::move(parts.front());
+    return known;
   }
-  c.fits = true;
-  out.push_back(std::move(c));
-}
+
+  /// All records must agree with the first one.
+  bool take_coordinates() {
+    bool const known = find_contents();
+    std::size_t record = header_;
+    for (std::size_t z = 0; z < zones().size(); ++z) {
+      auto& zone = zones()[z];
+      std::uint64_t const wanted = nodes_of(zone) * std::uint64_t(variant().bytes_per_node());
+      std::vector<std::vector<Segment>> parts;
+      for (std::size_t k = 0; k < records_of(zone); ++k, ++record) {
+        if (!known || records_.size(record) != wanted) return refuse_record(z, k, records_.size(record));
+        parts.push_back(records_.all[record]);
+      }
+      zone.segments = variant().planes ? from_planes(parts, nodes_of(zone), variant()) : std::move(parts.front());
+    }
+    return true;
+  }
+
+  bool refuse_record(std::size_t z, std::size_t k, std::uint64_t bytes) {
+    auto const& extent = zones()[z].extent;
+    return give_up(3, "the record of " +
+                          (variant().planes ? "plane k = " + std::to_string(k + 1) + " of " : std::string()) + "zone " +
+                          std::to_string(z + 1) + " (" + std::to_string(extent[0]) + " x " + std::to_string(extent[1]) +
+                          " x " + std::to_string(extent[2]) + " nodes) has " + std::to_string(bytes) +
+                          " bytes, which is no whole set of coordinates, with or without iblank");
+  }
+
+  Bytes& file_;
+  bool big_endian_;
+  Stated const& stated_;
+  Records const records_;
+  Candidate candidate_;
+  std::vector<std::int64_t> sizes_;  ///< the extents of all zones
+  std::size_t header_ = 1;           ///< records of the header
+};
 
 void try_binary(Bytes& file, bool big_endian, Stated const& stated, std::vector<Candidate>& out) {
   for (bool const multi : {true, false})
@@ -375,7 +422,7 @@ FileLayout detect_binary(std::string const& path, Stated const& stated) {
   Bytes file(path);
   std::vector<Candidate> tried;
   for (bool const big_endian : {false, true}) {
-    for (int const marker : {4, 8}) try_unformatted(file, marker, big_endian, stated, tried);
+    for (int const marker : {4, 8}) UnformattedTrial(file, marker, big_endian, stated).run(tried);
     try_binary(file, big_endian, stated, tried);
   }
   std::erase_if(tried, [&](Candidate const& c) { return !stated.allows(c.layout.variant); });

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace gridmorph::plot3d {
 
@@ -135,6 +136,136 @@ std::optional<std::int64_t> whole(double value) {
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
+/// All numbers of a text, and what tells how they are written.
+class TextNumbers {
+ public:
+  TextNumbers(std::string_view text, std::string const& path) : text_(text) {
+    Scanner scanner(text, path);
+    std::uint64_t const room = most_repeats_per_byte * text.size() + 64;
+    for (Token token; scanner.next(token);) {
+      if (token.repeat > room || all_.size() + token.repeat > room)
+        throw IoError(path + ": '" + std::string(token.text.substr(0, 40)) +
+                      "' repeats a number more often than a mesh file of this size does; repair it or write it again");
+      all_.insert(all_.end(), token.repeat, token.value);
+      if (ends_.size() < header_most)
+        ends_.insert(ends_.end(), std::min<std::size_t>(token.repeat, header_most - ends_.size()), scanner.end());
+      if (token.number.find('.') != std::string_view::npos) style_.add(token.number);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> const& all() const { return all_; }
+  [[nodiscard]] NumberStyle style() const { return style_.style(); }
+  /// Where the first `header` numbers end in the text.
+  [[nodiscard]] std::size_t end_of(std::size_t header) const { return ends_[header - 1]; }
+  /// Whether a repeat count has numbers before and behind that end.
+  [[nodiscard]] bool runs_across(std::size_t header) const {
+    return header < ends_.size() && ends_[header] == ends_[header - 1];
+  }
+  /// Number of zones, extents and coordinates are read by statements of their own: each begins on a new line.
+  [[nodiscard]] bool line_ends_after(std::size_t numbers) const {
+    if (numbers > ends_.size()) return false;
+    auto const rest = text_.substr(ends_[numbers - 1]);
+    auto const next = rest.find_first_not_of(" \t\r,");
+    return next == std::string_view::npos || rest[next] == '\n';
+  }
+
+ private:
+  static constexpr std::size_t header_most = 3 * std::size_t(most_zones) + 1;
+
+  std::string_view text_;
+  std::vector<double> all_;
+  std::vector<std::size_t> ends_;  ///< of the first numbers, to know where the extents end
+  StyleFinder style_;
+};
+
+struct TextCandidate {
+  FileLayout layout;
+  std::size_t header = 0;  ///< numbers before the coordinates
+};
+
+/// Which layouts the numbers of a formatted file fit.
+class TextTrials {
+ public:
+  TextTrials(TextNumbers const& numbers, Stated const& stated) : numbers_(numbers), stated_(stated) {
+    for (bool const multi : {true, false})
+      for (int const dimensions : {3, 2}) try_header(multi, dimensions);
+  }
+
+  /// The one that fits. Throws IoError where there is none, or several.
+  [[nodiscard]] TextCandidate only(std::string const& path) && {
+    if (good_.size() > 1) {
+      std::string message =
+          path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";
+      for (auto const& c : good_) message += "\n  " + to_string(c.layout.variant);
+      throw IoError(message);
+    }
+    if (good_.empty())
+      throw IoError(path + ": is no formatted PLOT3D file: " +
+                    (nearest_.empty() ? "its first numbers are no extents of zones" : nearest_) +
+                    "; it is cut short, damaged or something else: write it again");
+    return std::move(good_.front());
+  }
+
+ private:
+  void try_header(bool multi, int dimensions) {
+    auto const& all = numbers_.all();
+    TextCandidate c;
+    auto& v = c.layout.variant;
+    v.storage = Storage::formatted;
+    v.multi_block = multi;
+    v.dimensions = dimensions;
+    v.planes = stated_.planes.value_or(false);  // nothing in the file would tell
+    if (all.empty() || (multi && !(whole(all[0]) && all[0] <= most_zones))) return;
+    std::size_t const n = multi ? std::size_t(all[0]) : 1;
+    c.header = (multi ? 1 : 0) + n * std::size_t(dimensions);
+    if (c.header > all.size()) return;
+    auto const nodes = take_extents(c, n);
+    if (!nodes || !numbers_.line_ends_after(c.header) || (multi && !numbers_.line_ends_after(1))) return;
+    try_contents(c, *nodes);
+  }
+
+  /// The nodes of all n zones; nothing where the numbers are no extents.
+  [[nodiscard]] std::optional<std::uint64_t> take_extents(TextCandidate& c, std::size_t n) const {
+    auto const& all = numbers_.all();
+    int const dimensions = c.layout.variant.dimensions;
+    std::size_t next = c.layout.variant.multi_block ? 1 : 0;
+    std::uint64_t nodes = 0;
+    for (std::size_t z = 0; z < n; ++z) {
+      ZoneData zone;
+      std::uint64_t product = 1;
+      for (int a = 0; a < dimensions; ++a) {
+        auto const extent = whole(all[next++]);
+        if (!extent || product > all.size() / std::uint64_t(*extent)) return std::nullopt;
+        product *= std::uint64_t(*extent);
+        zone.extent[a] = int(*extent);
+      }
+      nodes += product;
+      c.layout.zones.push_back(zone);
+    }
+    return nodes;
+  }
+
+  /// Tries both: with iblank and without.
+  void try_contents(TextCandidate& c, std::uint64_t nodes) {
+    auto& v = c.layout.variant;
+    auto const count = numbers_.all().size();
+    for (bool const blank : {false, true}) {
+      v.iblank = blank;
+      std::uint64_t const wanted = c.header + nodes * std::uint64_t(v.dimensions + (blank ? 1 : 0));
+      if (!stated_.allows(v)) continue;
+      if (wanted == count) good_.push_back(c);
+      if (nearest_.empty())
+        nearest_ = "it should have " + std::to_string(wanted) + " numbers as " + to_string(v) + ", but it has " +
+                   std::to_string(count);
+    }
+  }
+
+  TextNumbers const& numbers_;
+  Stated const& stated_;
+  std::vector<TextCandidate> good_;
+  std::string nearest_;  ///< how many numbers the first layout whose header fits has
+};
+
 }  // namespace
 
 void Scanner::refuse(std::string_view word) const {
@@ -169,92 +300,17 @@ bool looks_like_numbers(std::string_view head) {
 }
 
 TextLayout read_text(std::string_view text, std::string const& path, Stated const& stated) {
-  std::vector<double> all;
-  std::vector<std::size_t> ends;  // of the first numbers, to know where the extents end
-  StyleFinder style;
-  Scanner scanner(text, path);
-  constexpr std::size_t header_most = 3 * std::size_t(most_zones) + 1;
-  std::uint64_t const room = most_repeats_per_byte * text.size() + 64;
-  for (Token token; scanner.next(token);) {
-    if (token.repeat > room || all.size() + token.repeat > room)
-      throw IoError(path + ": '" + std::string(token.text.substr(0, 40)) +
-                    "' repeats a number more often than a mesh file of this size does; repair it or write it again");
-    all.insert(all.end(), token.repeat, token.value);
-    if (ends.size() < header_most)
-      ends.insert(ends.end(), std::min<std::size_t>(token.repeat, header_most - ends.size()), scanner.end());
-    if (token.number.find('.') != std::string_view::npos) style.add(token.number);
-  }
-
-  struct Candidate {
-    FileLayout layout;
-    std::size_t header;
-  };
-  std::vector<Candidate> good;
-  std::string nearest;
-  for (bool const multi : {true, false})
-    for (int const dimensions : {3, 2}) {
-      Candidate c;
-      auto& v = c.layout.variant;
-      v.storage = Storage::formatted;
-      v.multi_block = multi;
-      v.dimensions = dimensions;
-      v.planes = stated.planes.value_or(false);  // nothing in the file would tell
-      if (all.empty() || (multi && !(whole(all[0]) && all[0] <= most_zones))) continue;
-      std::size_t const n = multi ? std::size_t(all[0]) : 1;
-      c.header = (multi ? 1 : 0) + n * std::size_t(dimensions);
-      if (c.header > all.size()) continue;
-      std::uint64_t nodes = 0;
-      bool usable = true;
-      for (std::size_t z = 0; z < n && usable; ++z) {
-        ZoneData zone;
-        std::uint64_t product = 1;
-        for (int a = 0; a < dimensions && usable; ++a) {
-          auto const extent = whole(all[(multi ? 1 : 0) + z * std::size_t(dimensions) + std::size_t(a)]);
-          usable = extent && product <= all.size() / std::uint64_t(*extent);
-          if (usable) product *= std::uint64_t(*extent);
-          if (usable) zone.extent[a] = int(*extent);
-        }
-        nodes += product;
-        c.layout.zones.push_back(zone);
-      }
-      // Number of zones, extents and coordinates are read by statements of their own: each begins on a new line.
-      auto const line_ends = [&](std::size_t numbers) {
-        if (numbers > ends.size()) return false;
-        auto const rest = text.substr(ends[numbers - 1]);
-        auto const next = rest.find_first_not_of(" \t\r,");
-        return next == std::string_view::npos || rest[next] == '\n';
-      };
-      usable = usable && line_ends(c.header) && (!multi || line_ends(1));
-      if (!usable) continue;
-      for (bool const blank : {false, true}) {
-        v.iblank = blank;
-        std::uint64_t const wanted = c.header + nodes * std::uint64_t(dimensions + (blank ? 1 : 0));
-        if (!stated.allows(v)) continue;
-        if (wanted == all.size()) good.push_back(c);
-        if (nearest.empty())
-          nearest = "it should have " + std::to_string(wanted) + " numbers as " + to_string(v) + ", but it has " +
-                    std::to_string(all.size());
-      }
-    }
-  if (good.size() > 1) {
-    std::string message =
-        path + ": could be several kinds of PLOT3D files; state which with format = \"...\" in its side file:";
-    for (auto const& c : good) message += "\n  " + to_string(c.layout.variant);
-    throw IoError(message);
-  }
-  if (good.empty())
-    throw IoError(path + ": is no formatted PLOT3D file: " +
-                  (nearest.empty() ? "its first numbers are no extents of zones" : nearest) +
-                  "; it is cut short, damaged or something else: write it again");
-  TextLayout out;
-  std::size_t const header = good.front().header;
-  if (header < ends.size() && ends[header] == ends[header - 1])
+  TextNumbers const numbers(text, path);
+  TextCandidate found = TextTrials(numbers, stated).only(path);
+  std::size_t const header = found.header;
+  if (numbers.runs_across(header))
     throw IoError(path + ": a repeat count runs from the extents of the zones into the coordinates; write it again");
-  out.first_value_at = ends[header - 1];
-  out.file = std::move(good.front().layout);
-  out.style = style.style();
+  TextLayout out;
+  out.first_value_at = numbers.end_of(header);
+  out.file = std::move(found.layout);
+  out.style = numbers.style();
   out.file.variant.double_precision = out.style.significant > 9;
-  out.values.assign(all.begin() + std::ptrdiff_t(header), all.end());
+  out.values.assign(numbers.all().begin() + std::ptrdiff_t(header), numbers.all().end());
   return out;
 }
 

@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/io/plot3d/plot3d_variant.hpp>
+#include <gridmorph/io/plot3d/plot3d_layout.hpp>
 
 #include <algorithm>
 #include <cctype>

@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/blanks.hpp>
-#include <gridmorph/io/vtk/xml_tags.hpp>
+#include <gridmorph/io/vtk/xml_file.hpp>
 
 #include <algorithm>
 #include <array>

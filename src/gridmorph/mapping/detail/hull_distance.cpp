@@ -1,5 +1,5 @@
 #include <gridmorph/mapping/detail/facet_shape.hpp>
-#include <gridmorph/mapping/detail/hull_distance.hpp>
+#include <gridmorph/mapping/detail/point_clouds.hpp>
 
 #include <algorithm>
 #include <cstddef>

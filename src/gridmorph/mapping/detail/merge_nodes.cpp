@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/point_numbers.hpp>
-#include <gridmorph/mapping/detail/merge_nodes.hpp>
+#include <gridmorph/mapping/detail/point_clouds.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include <gridmorph/mapping/detail/point_levels.hpp>
+#include <gridmorph/mapping/detail/point_clouds.hpp>
 
 #include <algorithm>
 #include <array>

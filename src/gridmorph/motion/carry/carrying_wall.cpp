@@ -1,5 +1,5 @@
 #include <gridmorph/geometry/smoothstep.hpp>
-#include <gridmorph/motion/carry/carrying_wall.hpp>
+#include <gridmorph/motion/carry/carried_features.hpp>
 #include <gridmorph/motion/detail/edge_distances.hpp>
 
 #include <algorithm>

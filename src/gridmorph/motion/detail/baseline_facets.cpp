@@ -1,4 +1,4 @@
-#include <gridmorph/motion/detail/baseline_facets.hpp>
+#include <gridmorph/motion/detail/facet_groups.hpp>
 
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/geometry/facet_topology.hpp>

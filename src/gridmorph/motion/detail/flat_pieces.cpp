@@ -1,4 +1,4 @@
-#include <gridmorph/motion/detail/flat_pieces.hpp>
+#include <gridmorph/motion/detail/facet_groups.hpp>
 
 #include <gridmorph/core/disjoint_sets.hpp>
 

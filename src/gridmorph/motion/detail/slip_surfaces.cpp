@@ -7,8 +7,7 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
-#include <gridmorph/motion/detail/baseline_facets.hpp>
-#include <gridmorph/motion/detail/flat_pieces.hpp>
+#include <gridmorph/motion/detail/facet_groups.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/end_walls/moved_wall.hpp>
+#include <gridmorph/motion/end_walls/extended_blades.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/end_walls/wall_shift.hpp>
+#include <gridmorph/motion/end_walls/extended_blades.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/ffd/bspline_basis.hpp>
+#include <gridmorph/motion/ffd/ffd_lattice.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/ffd/lattice_inverse.hpp>
+#include <gridmorph/motion/ffd/ffd_lattice.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/inflation/vertex_normals.hpp>
+#include <gridmorph/motion/inflation/surface_offset.hpp>
 
 #include <gridmorph/geometry/barycentric.hpp>
 #include <gridmorph/geometry/target_tree.hpp>

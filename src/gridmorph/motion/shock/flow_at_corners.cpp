@@ -1,4 +1,4 @@
-#include <gridmorph/motion/shock/flow_at_corners.hpp>
+#include <gridmorph/motion/shock/shock_cells.hpp>
 
 #include <gridmorph/boundary/coincident_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>

@@ -5,7 +5,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/shock/fitted_gradient.hpp>
-#include <gridmorph/motion/shock/flow_at_corners.hpp>
 
 #include <algorithm>
 #include <cmath>

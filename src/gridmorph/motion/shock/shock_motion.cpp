@@ -1,4 +1,4 @@
-#include <gridmorph/motion/shock/shock_motion.hpp>
+#include <gridmorph/motion/along_walls.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/smoothstep.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/cut_target.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 
 #include <gridmorph/boundary/patch_surface.hpp>
 

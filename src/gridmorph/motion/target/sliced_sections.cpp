@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/sliced_sections.hpp>
+#include <gridmorph/motion/target/section_rows.hpp>
 
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/surface_relaxation.hpp>
+#include <gridmorph/motion/target/surface_spread.hpp>
 
 #include <algorithm>
 #include <limits>

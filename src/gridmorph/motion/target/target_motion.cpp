@@ -2,11 +2,8 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/motion/target/cut_target.hpp>
-#include <gridmorph/motion/target/target_nodes.hpp>
-#include <gridmorph/motion/target/target_profile.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 #include <gridmorph/motion/target/target_projection.hpp>
-#include <gridmorph/motion/target/target_sections.hpp>
 
 #include <cmath>
 #include <optional>

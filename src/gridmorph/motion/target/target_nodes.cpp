@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/target_nodes.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

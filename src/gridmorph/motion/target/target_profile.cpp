@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/target_profile.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/target/edge_images.hpp>

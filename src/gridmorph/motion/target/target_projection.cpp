@@ -5,7 +5,6 @@
 #include <gridmorph/motion/target/edge_images.hpp>
 #include <gridmorph/motion/target/feature_edges.hpp>
 #include <gridmorph/motion/target/surface_pieces.hpp>
-#include <gridmorph/motion/target/surface_relaxation.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
 
 #include <algorithm>

@@ -1,11 +1,10 @@
-#include <gridmorph/motion/target/target_sections.hpp>
+#include <gridmorph/motion/target/target_mappings.hpp>
 
 #include <gridmorph/boundary/joined_sides.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/cubic_piece.hpp>
 #include <gridmorph/motion/target/section_profile.hpp>
 #include <gridmorph/motion/target/section_rows.hpp>
-#include <gridmorph/motion/target/sliced_sections.hpp>
 #include <gridmorph/motion/target/span_coordinate.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
 

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/turbomachinery/section_frame.hpp>
+#include <gridmorph/motion/turbomachinery/section_geometry.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>

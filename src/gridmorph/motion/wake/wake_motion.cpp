@@ -1,4 +1,4 @@
-#include <gridmorph/motion/wake/wake_motion.hpp>
+#include <gridmorph/motion/along_walls.hpp>
 
 #include <gridmorph/geometry/smoothstep.hpp>
 

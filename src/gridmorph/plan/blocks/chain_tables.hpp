@@ -65,6 +65,11 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
                 std::vector<VolumePart>& volume, int number, PlacedBox const& box, int piece, int entity, int category,
                 kernels::Segment& segment);
 
+/// Appends the side tables of chain number `number` (the last in stage.lines) when any of its sides, or an edge or
+/// corner on them, is known; leaves the chain a plain sweep otherwise. Cost: O(nodes on the chain's surface).
+void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
+                     int number, Stage& stage);
+
 // --- implementation of the template ---
 
 /// Owner's frame of an entity -> the chain's frame, in the rotation table; -1: the same.

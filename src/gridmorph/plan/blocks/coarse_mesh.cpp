@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/coarse_mesh.hpp>
+#include <gridmorph/plan/coarse_plan.hpp>
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
-#include <gridmorph/plan/blocks/loose_nodes.hpp>
+#include <gridmorph/plan/blocks/boundary_facts.hpp>
 
 #include <algorithm>
 #include <iterator>

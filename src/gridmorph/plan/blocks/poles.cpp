@@ -1,5 +1,5 @@
 #include <gridmorph/mesh/coordinate_resolution.hpp>
-#include <gridmorph/plan/blocks/poles.hpp>
+#include <gridmorph/plan/blocks/boundary_facts.hpp>
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/plan/blocks/boundary_facts.hpp>
 #include <gridmorph/plan/blocks/line_walk.hpp>
-#include <gridmorph/plan/blocks/ranked_kinds.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
+#include <gridmorph/plan/blocks/chain_tables.hpp>
 #include <gridmorph/plan/blocks/host_lines.hpp>
-#include <gridmorph/plan/blocks/side_tables.hpp>
 
 #include <algorithm>
 

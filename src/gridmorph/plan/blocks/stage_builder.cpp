@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/side_tables.hpp>
+#include <gridmorph/plan/blocks/chain_tables.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>
 #include <gridmorph/plan/blocks/wall_roots.hpp>

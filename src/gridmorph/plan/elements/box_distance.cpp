@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/box_distance.hpp>
+#include <gridmorph/plan/elements/wrap_cells.hpp>
 
 #include <algorithm>
 #include <cmath>

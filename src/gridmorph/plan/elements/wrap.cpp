@@ -1,9 +1,8 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/elements/background.hpp>
-#include <gridmorph/plan/elements/box_distance.hpp>
 #include <gridmorph/plan/elements/column_heights.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
-#include <gridmorph/plan/elements/wrap_fill.hpp>
+#include <gridmorph/plan/elements/wrap_cells.hpp>
 #include <gridmorph/plan/elements/wrap_lattice.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/wrap_fill.hpp>
+#include <gridmorph/plan/elements/wrap_cells.hpp>
 
 #include <algorithm>
 

@@ -1,4 +1,5 @@
-// The planes that a patch lies on where it lies on several.
+// The baseline mesh's own surface as facets: which patches make up one surface, and the planes that a patch lies on
+// where it lies on several.
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
@@ -6,6 +7,11 @@
 #include <vector>
 
 namespace gridmorph {
+
+/// Patches that go on into one another without a crease along most of the edges they share. Where two groups meet a
+/// node is on both surfaces, so it stays on their edge. Cost O(n log n) in the nodes.
+std::vector<std::vector<int>> smoothly_joined(Boundary const& boundary, std::vector<int> const& patches,
+                                              FacetOptions const& options);
 
 /// Nodes of a patch of elements, ascending, by pieces: faces (lines, in a plane mesh) that share an edge (a node)
 /// belong together where they are within 30 degrees of one another; whether a piece is a plane is the caller's to see.

@@ -1,7 +1,9 @@
-// A cloud of points and ever more thinned-out copies of it, each with a k-d tree. Internal.
+// Clouds of points: ever more thinned-out copies with a k-d tree each, how far the origin lies outside of a few points,
+// and nodes of a model that are given more than once. Internal.
 #pragma once
 
 #include <gridmorph/kernels/vec3.hpp>
+#include <gridmorph/mapping/structural_model.hpp>
 
 #include <nanoflann.hpp>
 
@@ -47,5 +49,15 @@ struct Level {
 
 /// All points first; each further level is thinned to a quarter of the density along a line, down to `fewest` points.
 std::vector<std::unique_ptr<Level>> make_levels(std::vector<Vec3> const& position, std::size_t fewest);
+
+/// The point of the convex hull that is closest to the origin; the zero vector when the origin is inside, or outside by
+/// less than `tolerance`. The points may lie in a plane or on a line. Cost O(n) inside, O(n^3) outside: for
+/// neighbourhoods.
+Vec3 closest_in_hull(std::vector<Vec3> const& points, double tolerance);
+
+/// Keeps the first of nodes at equal positions, in the model, its elements and all fields (fields)(nodes). A
+/// quadrilateral that loses a corner so becomes a triangle. Throws ConfigError when their displacements differ by more
+/// than 1e-6 of the largest of the field. Cost O(n log n).
+void merge_nodes(StructuralModel& model, std::vector<std::vector<Vec3>>& fields);
 
 }  // namespace gridmorph::mapping

@@ -1,14 +1,58 @@
-// The `wake` rule: regions behind trailing edges that go along with them.
+// Parts and regions that go along with walls that other rules move: the rules `attached`, `shock` and `wake`.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
+#include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/motion/motion.hpp>
 #include <gridmorph/motion/wake/wake_places.hpp>
 #include <gridmorph/motion/wall_faces.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
+
+/// What AttachedRule says, for the walls as they move now.
+class AttachedMotion {
+ public:
+  using Displacement = WallFaces::Displacement;
+
+  /// Throws MotionError where no node of the patches is near enough, and for AttachedRule::How::nearest without faces.
+  /// Cost O(nodes of the patches); nearest: O(n log n).
+  AttachedMotion(Boundary const& boundary, std::vector<int> const& patches, AttachedRule const& rule,
+                 Displacement const& displacement);
+
+  /// The displacement of any point. Exactly zero where the walls rest. Cost O(1); nearest: O(log n).
+  [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
+
+ private:
+  RigidFit fit_;
+  WallFaces faces_;  ///< of the nearest
+};
+
+/// A point x of the region moves by
+///
+///     u(x) = u_w + share smoothstep(|x - x_w| / fade) v(x)
+///
+/// v: ShockShift; x_w, u_w: the nearest place of the walls and its displacement, which the region takes up, so that
+/// both agree where they meet. Without walls u = share v.
+class ShockMotion {
+ public:
+  /// `displacement`: of the walls, which may be none. Throws MotionError where the rule has no shift, and for walls
+  /// without faces. Cost O(n log n) of the walls.
+  ShockMotion(Boundary const& boundary, ShockRule const& rule, std::vector<int> const& walls,
+              WallFaces::Displacement const& displacement);
+
+  /// The displacement of a point. Cost O(log n), and the shock's points within the radius of its shift.
+  [[nodiscard]] Vec3 displacement(Vec3 const& point) const;
+
+ private:
+  std::shared_ptr<ShockShift const> shift_;
+  double fade_, share_;
+  WallFaces walls_;
+};
 
 /// A point x of the wake of a section moves by
 ///
