@@ -1,6 +1,7 @@
 // Report pages of whole runs.
 #include <system/run_command.hpp>
 
+#include <gridmorph/page/html.hpp>
 #include <gridmorph/page/page_parts.hpp>
 
 #include <nlohmann/json.hpp>
@@ -144,13 +145,36 @@ TEST_F(PageRun, OfAWheelSaysInHowManyPassagesCellsAreInverted) {
   expect_nothing_written();
 }
 
-TEST_F(PageRun, IsRefusedForAWheelOverTime) {
-  write("wheel.toml",
-        contents(path("rotation.toml")) + "\n[wheel]\noutput = \"out.cgns\"\npassages = 2\n[sequence]\nsteps = 2\n");
-  std::string text = contents(path("wheel.toml"));
+TEST_F(PageRun, OfAWheelOverTimeShowsTheWorstPassageOfTheWorstStep) {
+  std::string text = contents(path("rotation.toml"));
   std::string const file = "file    = \"rotation.csv\"";
-  write("wheel.toml", text.replace(text.find(file), file.size(), file + "\namplitude = \"cos(2*pi*t)\""));
-  expect_bad_input(gridmorph("wheel wheel.toml --html page.html"), {"over time", "--html"});
+  text.replace(text.find(file), file.size(), file + "\namplitude = \"0.5 - cos(2 * pi * t)\"");
+  write("wheel.toml", text +
+                          "\n[wheel]\noutput = \"out_{step}.cgns\"\npassages = 2\nfactors = [1, 0.5]\n[sequence]\n"
+                          "steps = 2\n[guard]\nmax_trim = 1\n");
+  Outcome const run = gridmorph("wheel wheel.toml --html page.html --report r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("wrote page.html"), std::string::npos);
+  std::string const html = contents(path("page.html"));
+  auto const report = nlohmann::json::parse(contents(path("r.json")));
+  auto const& steps = report["sequence"]["steps"];
+  ASSERT_EQ(steps.size(), 2U);
+  int const worst = report["sequence"]["worst_step"];
+  EXPECT_EQ(worst, 2) << "the rotation goes farthest there";
+  for (auto const& step : steps) {
+    auto const& least = step["min_determinant"];
+    auto const number = std::to_string(step["worst_passage"].get<int>());
+    EXPECT_NE(html.find(">" + page::number(least["value"]) + "<"), std::string::npos);
+    EXPECT_NE(html.find(">passage " + number + ", " + page::escaped(page::place_of(least)) + "<"), std::string::npos);
+    EXPECT_EQ(least["value"], step["passages"][step["worst_passage"].get<std::size_t>() - 1]["min_determinant"]);
+    for (auto const& passage : step["passages"])
+      EXPECT_LE(passage["largest_displacement"], step["largest_displacement"]);
+  }
+  for (std::string const part :
+       {"The 2 steps", "The 2 passages", "Over all steps", "At step 2, the worst one", "Of step 2, the worst one",
+        "Passage 1, the worst one at step 2", "No cell is inverted in any of 2 steps", "of the wheel of the worst step",
+        "class=\"curve\"", "class=\"histogram\"", "Span 50 %", "data:image/png"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
 TEST_F(PageRun, RefusesPathsBeforeTheRun) {

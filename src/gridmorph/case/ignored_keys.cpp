@@ -61,22 +61,19 @@ class Ignored {
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
     refuse("guard", "steps", why + ": displacements follow grid lines there, and steps add up to what one gives");
-    if (use_.run != CaseUse::Run::wheel && !case_.guard.smooth && !case_.guard.retry.value_or(false))
+    if (case_.guard.smooth) return;
+    if (use_.run == CaseUse::Run::wheel)
+      refuse("guard", "freeze", "keeps what smooth does, which is not true; use smooth = true");
+    else if (!case_.guard.retry.value_or(false))
       refuse("guard", "freeze", "keeps what smooth or retry do, and neither is true; use smooth = true");
   }
 
   void of_wheel() {
     if (case_.find_blocks) refuse("mesh", "blocks", "is for `gridmorph morph`, and wheels take a mesh as it is");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
-    if (use_.unstructured) {
-      std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
-      refuse("guard", "freeze", why);
-      if (!case_.background) refuse("guard", "steps", why);
-    } else {
-      for (char const* key : {"smooth", "freeze"})
-        refuse("guard", key, "is for `gridmorph morph`, and passages of a wheel stay as they are morphed");
-    }
-    refuse("output", "stages", "is for `gridmorph morph`, and passages of a wheel have one plan");
+    std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
+    if (use_.unstructured && !case_.background) refuse("guard", "steps", why);
+    refuse("output", "stages", why);
     if (case_.plan.volume.order == OrderBy::prediction)
       refuse("volume", "order", "is for `gridmorph morph`, and chains of a wheel, whose blades differ, go by priority");
     if (case_.plan.volume.laws_by_prediction)

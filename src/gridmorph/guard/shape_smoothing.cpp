@@ -62,7 +62,15 @@ class ShapeSmoothing {
  public:
   ShapeSmoothing(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
                  Coordinates& x, ShapeSmoothingOptions const& options)
-      : host_(host), prepared_(prepared), handedness_(handedness), x_(x), options_(options), cells_(prepared.mesh) {}
+      : host_(host),
+        prepared_(prepared),
+        handedness_(handedness),
+        x_(x),
+        options_(options),
+        cells_(prepared.mesh),
+        looks_at_(prepared.mesh.zones.size(), options.zones.empty() ? 1 : 0) {
+    for (int const zone : options.zones) looks_at_[std::size_t(zone)] = 1;
+  }
 
   ShapeSmoothingReport run() {
     ShapeSmoothingReport report;
@@ -98,10 +106,12 @@ class ShapeSmoothing {
 
   ShapeSmoothingReport run(FrozenSmoothing const& frozen) {
     ShapeSmoothingReport report;
-    if (frozen.cells.empty() || options_.rounds.empty() || is_baseline()) return report;
+    std::vector<Index> cells = frozen.cells;
+    std::erase_if(cells, [this](Index cell) { return !looks_at(cells_.zone(cell)); });
+    if (cells.empty() || options_.rounds.empty() || is_baseline()) return report;
     ShapeSmoothingOptions::Round const round = frozen.inverted ? options_.rounds.back() : options_.rounds.front();
     BlockPoints points(prepared_);
-    ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, frozen.cells, round.rings);
+    ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, cells, round.rings);
     ShapeCount const before = count(region);
     detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_, true);
     ShapeCount const after = count(region);
@@ -117,10 +127,14 @@ class ShapeSmoothing {
 
  private:
   [[nodiscard]] bool is_baseline() const {
-    for (Index n = 0; n < x_.size(); ++n)
-      if (!(x_[n] == prepared_.mesh.coordinates[n])) return false;
+    for (std::size_t z = 0; z < looks_at_.size(); ++z) {
+      Zone const& zone = prepared_.mesh.zones[z];
+      for (Index n = zone.first_node; looks_at(int(z)) && n < zone.first_node + zone.size(); ++n)
+        if (!(x_[n] == prepared_.mesh.coordinates[n])) return false;
+    }
     return true;
   }
+  [[nodiscard]] bool looks_at(int zone) const { return looks_at_[std::size_t(zone)] != 0; }
   [[nodiscard]] double handedness(Index cell) const { return handedness_[std::size_t(cells_.zone(cell))]; }
 
   static kernels::HexCell corners(Coordinates const& x, CellNodes const& nodes) {
@@ -186,6 +200,7 @@ class ShapeSmoothing {
     std::vector<std::vector<Index>> found(std::size_t(std::max<Index>(n_parts, 0)));
     detail::for_all_parts(host_, "gridmorph::shape_smoothing::trigger", n_parts, [&](Index n) {
       for (Index cell = n * part; cell < std::min(cells_.size(), (n + 1) * part); ++cell) {
+        if (!looks_at(cells_.zone(cell))) continue;
         CellNodes const nodes = cells_.nodes(cell);
         double const hand = handedness(cell);
         if ((suspicious(nodes, hand) || broken(nodes, hand)) && shape(nodes, hand).lost)
@@ -264,6 +279,7 @@ class ShapeSmoothing {
   Coordinates& x_;
   ShapeSmoothingOptions const& options_;
   BlockCells cells_;
+  std::vector<std::uint8_t> looks_at_;  ///< per zone
 };
 
 }  // namespace

@@ -24,6 +24,9 @@ struct ShapeSmoothingOptions {
     double relaxation;  ///< first length tried of each step, in Newton steps
   };
   std::vector<Round> rounds{{8, 32, 1}, {24, 100, 1.7}};
+  /// Numbers of the zones whose cells are looked at; empty: all. What is smoothed around them follows from them alone
+  /// where no interface joins them to others.
+  std::vector<int> zones{};
 };
 
 /// What is smoothed whatever a morph looks like, so that meshes of a sequence do not jump where the first cell loses

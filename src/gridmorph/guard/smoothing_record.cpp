@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 namespace gridmorph {
@@ -26,22 +27,25 @@ namespace {
 constexpr char const* who = "gridmorph::SmoothingRecord::add";
 
 struct Mode {
+  int part;
   double value;                    ///< eigenvalue
   std::vector<double> of_records;  ///< eigenvector
 };
 
 /// Eigenvectors of the products of vectors with one another, largest values first, down to `least` of the largest.
-std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, double least) {
+/// places: of the vectors, those of `part`.
+std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, std::vector<std::size_t> const& places,
+                           int part, double least) {
   constexpr std::size_t most = SmoothingRecord::most;
   double a[most][most] = {}, v[most][most];
   for (std::size_t k = 0; k < u.size(); ++k)
     for (std::size_t m = 0; m <= k; ++m) {
-      for (std::size_t b = 0; b < u[k]->size(); ++b) a[k][m] += dot((*u[k])[b], (*u[m])[b]);
+      for (std::size_t const b : places) a[k][m] += dot((*u[k])[b], (*u[m])[b]);
       a[m][k] = a[k][m];
     }
   kernels::diagonalise(a, v);
   std::vector<Mode> out;
-  for (std::size_t d = 0; d < most; ++d) out.push_back({a[d][d], {v[d], v[d] + u.size()}});
+  for (std::size_t d = 0; d < most; ++d) out.push_back({part, a[d][d], {v[d], v[d] + u.size()}});
   std::stable_sort(out.begin(), out.end(), [](Mode const& l, Mode const& r) { return l.value > r.value; });
   double const largest = out.front().value;
   std::erase_if(out, [&](Mode const& m) { return !(m.value > least * largest) || !(m.value > 0); });
@@ -132,8 +136,19 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
   }
   std::sort(out.node.begin(), out.node.end());
   out.node.erase(std::unique(out.node.begin(), out.node.end()), out.node.end());
-  std::vector<Mode> const modes =
-      out.node.empty() ? std::vector<Mode>() : modes_of(u, options.least_share * options.least_share);
+  auto const part_of = [&](Index node) {
+    return options.part_of_node.empty() ? 0 : options.part_of_node[std::size_t(node)];
+  };
+  std::map<int, std::vector<std::size_t>> places;  // of boundary nodes, by part
+  for (std::size_t b = 0; b < std::size_t(out.n_boundary); ++b)
+    places[part_of(blocks_ ? blocks_->plan().boundary_nodes[b] : Index(elements_->plan.known[b]))].push_back(b);
+  std::set<int> moved;
+  for (Index const node : out.node) moved.insert(part_of(node));
+  std::vector<Mode> modes;
+  for (int const part : moved) {
+    auto const own = modes_of(u, places[part], part, options.least_share * options.least_share);
+    modes.insert(modes.end(), own.begin(), own.end());
+  }
   out.n_modes = int(modes.size());
   out.n_records = size();
   if (modes.empty()) {
@@ -145,20 +160,21 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
   for (std::size_t d = 0; d < modes.size(); ++d)
     for (std::size_t k = 0; k < recorded_.size(); ++k) {
       double const share = modes[d].of_records[k];
-      for (std::size_t b = 0; b < std::size_t(out.n_boundary); ++b)
+      for (std::size_t const b : places[modes[d].part])
         out.gauge[d * std::size_t(out.n_boundary) + b] += share / modes[d].value * (*u[k])[b];
       std::size_t at = 0;
       for (auto const& [node, shift] : recorded_[k].shift) {
+        if (part_of(node) != modes[d].part) continue;
         while (out.node[at] != node) ++at;
         out.shift[at * modes.size() + d] += share * shift;
       }
     }
-  // a_d(u_k) = v_d(k)
+  // a_d(u_k) = v_d(k); modes of other parts have no shift at a node.
   for (std::size_t k = 0; k < recorded_.size(); ++k) {
     auto next = recorded_[k].shift.begin();
     for (std::size_t at = 0; at < out.node.size(); ++at) {
-      bool const moved = next != recorded_[k].shift.end() && next->first == out.node[at];
-      Vec3 left = moved ? (next++)->second : Vec3{};
+      bool const has_shift = next != recorded_[k].shift.end() && next->first == out.node[at];
+      Vec3 left = has_shift ? (next++)->second : Vec3{};
       out.largest_shift = std::max(out.largest_shift, norm(left));
       for (std::size_t d = 0; d < modes.size(); ++d)
         left = left - modes[d].of_records[k] * out.shift[at * modes.size() + d];

@@ -16,6 +16,9 @@ struct FreezeOptions {
   /// Directions of the boundary's displacement along which those recorded differ by less than this share of the largest
   /// are one.
   double least_share = 1e-3;
+  /// Per node of the mesh the number of its part, of parts that nothing connects: the shifts of a part are then a
+  /// function of the displacement of that part's boundary alone. Empty: the mesh is one part.
+  std::vector<int> part_of_node{};
 };
 
 /// Records boundary displacements u_k with the meshes that a plan and then a guard made of them: guard(),

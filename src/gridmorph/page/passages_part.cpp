@@ -35,6 +35,42 @@ std::string failures_of_passage(json const& passage) {
   return out;
 }
 
+/// A row per passage: the largest displacement and the smallest determinant of all steps, and the steps they are at.
+/// passages: those of the worst step, for the names of their blades.
+std::string passages_over_time(json const& sequence, json const& passages) {
+  json const& steps = sequence["steps"];
+  Table table({{"passage", true},
+               {"blade"},
+               {"largest displacement", true},
+               {"at step", true},
+               {"smallest determinant", true},
+               {"at step", true},
+               {"newly inverted, at most", true}});
+  for (std::size_t p = 0; p < passages.size(); ++p) {
+    json const *farthest = nullptr, *worst = nullptr, *most = nullptr;
+    Index farthest_step = 0, worst_step = 0;
+    for (json const& step : steps) {
+      json const& now = step["passages"][p];
+      auto const beyond = [&](json const* other, char const* key) {
+        return other == nullptr || now[key].get<double>() > (*other)[key].get<double>();
+      };
+      if (beyond(farthest, "largest_displacement")) {
+        farthest = &now;
+        farthest_step = step["step"].get<Index>();
+      }
+      if (worst == nullptr || now["min_determinant"].get<double>() < (*worst)["min_determinant"].get<double>()) {
+        worst = &now;
+        worst_step = step["step"].get<Index>();
+      }
+      if (beyond(most, "newly_inverted")) most = &now;
+    }
+    table.add({std::to_string(p + 1), escaped(blade_names(passages[p])), number((*farthest)["largest_displacement"]),
+               std::to_string(farthest_step), number((*worst)["min_determinant"]), std::to_string(worst_step),
+               count((*most)["newly_inverted"])});
+  }
+  return "<h3>Over all steps</h3>\n" + table.html();
+}
+
 }  // namespace
 
 std::string passages_part(ReportPage const& page) {
@@ -42,6 +78,9 @@ std::string passages_part(ReportPage const& page) {
   json const& wheel = page.report["wheel"];
   auto const worst = wheel["worst_passage"].get<std::size_t>();
   std::string out = fmt::format("<section id=\"passages\"><h2>The {} passages</h2>\n", wheel["passages"].size());
+  if (page.report.contains("sequence"))
+    out += passages_over_time(page.report["sequence"], wheel["passages"]) +
+           fmt::format("<h3>At step {}, the worst one</h3>\n", page.report["sequence"]["worst_step"].get<Index>());
   Table table({{"passage", true},
                {"blade"},
                {"largest displacement", true},

@@ -58,6 +58,15 @@ std::string step_caption(json const& step) {
   return text;
 }
 
+/// Where the smallest determinant of a step is: of a wheel in which passage too.
+std::string place_in_step(json const& step) {
+  json const& least = step["min_determinant"];
+  if (least.is_null()) return {};
+  std::string const passage =
+      step.contains("worst_passage") ? fmt::format("passage {}, ", step["worst_passage"].get<Index>()) : std::string();
+  return escaped(passage + place_of(least));
+}
+
 }  // namespace
 
 std::string sequence_part(ReportPage const& page) {
@@ -105,7 +114,7 @@ std::string sequence_part(ReportPage const& page) {
     json const& least = step["min_determinant"];
     table.add({s == worst ? fmt::format("<b>{}</b>", s + 1) : std::to_string(s + 1), number(step["time"]),
                number(step["largest_displacement"]), least.is_null() ? "" : number(least["value"]),
-               count(step["newly_inverted"]), least.is_null() ? "" : escaped(place_of(least)),
+               count(step["newly_inverted"]), place_in_step(step),
                step["shortfall"].is_null() ? "" : escaped(step["shortfall"].get<std::string>())});
   }
   return out + table.html() + "</section>\n";

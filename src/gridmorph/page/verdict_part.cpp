@@ -113,7 +113,7 @@ Verdict verdict_of(ReportPage const& page) {
   }
   if (report.contains("wheel")) {
     inverted = std::max(inverted, newly_inverted_of_wheel(report["wheel"]));
-    steps = of_passages(report["wheel"], inverted > 0, falls_short);
+    if (!report.contains("sequence")) steps = of_passages(report["wheel"], inverted > 0, falls_short);
   }
   if (inverted > 0) {
     bool const written = !report["output"].is_null();
@@ -134,9 +134,8 @@ std::string certificate_sentence(ReportPage const& page) {
   json const& morphed = page.report["morphed"];
   if (!morphed.contains("certificate")) return {};
   json const& c = morphed["certificate"];
-  std::string const of_worst = page.report.contains("sequence") ? " of the worst step"
-                               : page.report.contains("wheel")  ? " of the wheel"
-                                                                : "";
+  std::string of_worst = page.report.contains("wheel") ? " of the wheel" : "";
+  if (page.report.contains("sequence")) of_worst += " of the worst step";
   if (c["holds"].get<bool>())
     return fmt::format(
         "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}{}.",

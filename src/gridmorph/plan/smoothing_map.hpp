@@ -1,6 +1,7 @@
 // What a guard moved nodes by, as a linear function of the boundary's displacement: a part that a plan may carry.
 #pragma once
 
+#include <gridmorph/core/index.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/kernels/frozen_shifts.hpp>
 

@@ -53,6 +53,12 @@ struct Retried {
       json;  ///< "first", "tried": {"keys", "newly_inverted", "beyond_limits", "min_determinant"}, "kept": keys or null
 };
 
+/// What guards, other recipes and freezing did to a run.
+struct Guarded {
+  std::vector<std::string> notes;                  ///< for people
+  nlohmann::json json = nlohmann::json::object();  ///< "retry", "frozen_guard" of reports, where there is any
+};
+
 /// A mesh made by some recipe.
 struct Trial {
   Badness badness;

@@ -8,6 +8,7 @@
 #include <gridmorph/report/json_text.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/report/smoothing_text.hpp>
 #include <gridmorph/run/block_stages.hpp>
 #include <gridmorph/run/element_stages.hpp>
 #include <gridmorph/run/exit_status.hpp>
@@ -169,19 +170,8 @@ void Run::freeze_into_plan(Guarded& guarded, std::vector<Moment> const& moments)
     plan_->morph(displacement_, result_.morphed, nullptr);
     measure();
   }
-  guarded.notes.push_back(
-      map.n_modes == 0
-          ? std::string("the guard moved no node: there is nothing to freeze into the plan")
-          : fmt::format("the guard is frozen into the plan: {} nodes move by a linear function of the "
-                        "boundary's displacement, {} of {} displacements, by {:.3g} at most and "
-                        "within {:.3g} of where the guard had them",
-                        map.n_moved(), map.n_modes == 1 ? "one mode" : fmt::format("{} modes", map.n_modes),
-                        map.n_records, map.largest_shift, map.misfit));
-  guarded.json["frozen_guard"] = {{"displacements", map.n_records},
-                                  {"modes", map.n_modes},
-                                  {"nodes", map.n_moved()},
-                                  {"largest_shift", map.largest_shift},
-                                  {"largest_distance", map.misfit}};
+  guarded.notes.push_back(describe(map));
+  guarded.json["frozen_guard"] = frozen_guard_json(map);
 }
 
 void Run::measure() {

@@ -37,12 +37,6 @@ struct TriedSteps {
   std::vector<std::string> notes;  ///< numbers of steps that could not be planned
 };
 
-/// What guards, other recipes and freezing did to a run.
-struct Guarded {
-  std::vector<std::string> notes;                  ///< for people
-  nlohmann::json json = nlohmann::json::object();  ///< "retry", "frozen_guard" of reports, where there is any
-};
-
 /// How much of a motion leaves every cell valid.
 struct ValidShare {
   int percent = 0;     ///< certified

@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/wheel_page.hpp>
 
@@ -41,24 +42,28 @@ PatchRoles roles_of_passage(Mesh const& mesh, Motion const& motion) {
 
 void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page) {
   Mesh const& mesh = run.sector().mesh();
-  WorstPassage const& worst = run.worst();
+  WorstPassage const& worst = *result.worst;
   page.begin_passage(run.sector().loaded().pictures(), roles_of_passage(mesh, case_file.motion), mesh.coordinates);
   page.finish_passage({mesh.coordinates, worst.morphed, run.near(), {}},
                       result.passages[std::size_t(worst.passage)].quality, run.sector().loaded().kind().cells);
 }
 
-nlohmann::json wheel_page_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result,
-                               nlohmann::json const& report) {
-  auto const worst = std::size_t(run.worst().passage);
+nlohmann::json wheel_page_json(CaseFile const& case_file, WheelResult const& result, nlohmann::json const& report) {
+  auto const worst = std::size_t(result.worst->passage);
   nlohmann::json json = quality_json(result.baseline, result.passages[worst].quality, thresholds_of(case_file));
   for (char const* key : {"gridmorph", "case_file", "input", "output", "nodes", "times", "notes"})
     json[key] = report[key];
   json["morphed"]["certificate"] = report["certificate"];
+  std::string step;
+  if (report.contains("sequence")) {
+    json["sequence"] = report["sequence"];
+    step = fmt::format("step {}, ", report["sequence"]["worst_step"].get<int>());
+  }
   json["shortfalls"] = nlohmann::json::array();
   for (auto const& passage : report["passages"])
     for (auto shortfall : passage["shortfalls"]) {
       shortfall["message"] =
-          fmt::format("passage {}: {}", passage["passage"].get<int>(), shortfall["message"].get<std::string>());
+          fmt::format("{}passage {}: {}", step, passage["passage"].get<int>(), shortfall["message"].get<std::string>());
       json["shortfalls"].push_back(std::move(shortfall));
     }
   json["wheel"] = {{"passages", report["passages"]},

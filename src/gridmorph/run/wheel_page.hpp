@@ -6,11 +6,11 @@
 
 namespace gridmorph::cli {
 
-/// Pictures and numbers of the worst passage. run: with keep_worst(), after make(). Cost: as RunPage::finish().
+/// Pictures and numbers of the worst passage. result: of a run with keep_worst(), over time that of the worst step.
+/// Cost: as RunPage::finish().
 void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page);
 
 /// What the page is made from. report: that of the wheel, with its output.
-nlohmann::json wheel_page_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result,
-                               nlohmann::json const& report);
+nlohmann::json wheel_page_json(CaseFile const& case_file, WheelResult const& result, nlohmann::json const& report);
 
 }  // namespace gridmorph::cli

@@ -1,11 +1,16 @@
 #include <gridmorph/boundary/coverage.hpp>
 #include <gridmorph/case/side_file.hpp>
+#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/repeated_elements.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
+#include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/run/wheel_passage.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace gridmorph::cli {
@@ -51,16 +56,66 @@ Coordinates WheelPassage::in_file_order(Coordinates const& x) const {
 PassagePlan::PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelRows const& rows,
                          WheelSetup const& setup)
     : mesh_(passage.loaded()),
+      rows_(rows),
+      smooth_(case_file.guard.smooth),
       motion_(mesh_.indexed(), passage.links(), rows, setup.at(setup.moments.front()), setup.same_rules(),
               with_background(case_file, mesh_.mesh()), setup.blades,
               {case_file.sequence ? int(setup.moments.size()) : 0,
                [&](int step) { return setup.at(setup.moments[std::size_t(step)]); }}),
-      morpher_({}, motion_.plan(), mesh_.coordinates()) {}
+      morpher_(std::in_place, Exec(), motion_.plan(), mesh_.coordinates()) {}
 
-GuardReport PassagePlan::morph(std::vector<Vec3> const& boundary, Coordinates& morphed) {
-  apply_on_host(morpher_, boundary, morphed);
-  if (mesh_.is_structured()) return {};
-  return guard({}, mesh_.indexed(), motion_.plan(), morphed);
+void PassagePlan::morph(std::vector<Vec3> const& boundary, Coordinates& morphed) {
+  apply_on_host(*morpher_, boundary, morphed);
+}
+
+GuardReport PassagePlan::relax(Coordinates& morphed) const {
+  if (motion_.plan().smoothing()) return {};
+  if (!mesh_.is_structured()) return guard({}, mesh_.indexed(), motion_.plan(), morphed);
+  GuardReport out;
+  if (!smooth_) return out;
+  PreparedMorph const& blocks = *PlanAccess::blocks(motion_.plan());
+  std::vector<int> const& handedness = mesh_.indexed().handedness();
+  for (WheelRow const& row : rows_.rows) {
+    ShapeSmoothingOptions const of_row{.zones = row.zones};
+    GuardReport const own = report_of(frozen_ ? smooth_frozen({}, blocks, handedness, morphed, *frozen_, of_row)
+                                              : smooth_shapes({}, blocks, handedness, morphed, of_row));
+    out.before += own.before;
+    out.after += own.after;
+    out.rounds = std::max(out.rounds, own.rounds);
+    out.inverted_before += own.inverted_before;
+    out.inverted_after += own.inverted_after;
+  }
+  return out;
+}
+
+void PassagePlan::freeze(Coordinates const& morphed) {
+  if (!frozen_) frozen_.emplace();
+  frozen_->join(lost_shapes({}, *PlanAccess::blocks(motion_.plan()), mesh_.indexed().handedness(), morphed));
+}
+
+void PassagePlan::record(std::vector<Vec3> const& boundary, Coordinates const& plain, Coordinates const& guarded) {
+  if (!record_) record_.emplace(motion_.plan());
+  record_->add(boundary, plain, guarded);
+}
+
+SmoothingMap const& PassagePlan::freeze_recorded() {
+  motion_.freeze(record_->map({.part_of_node = part_of_nodes()}));
+  record_.reset();
+  morpher_.emplace(Exec(), motion_.plan(), mesh_.coordinates());
+  return *motion_.plan().smoothing();
+}
+
+/// The row of each node; rows of elements that touch, whose nodes at one place move as one, are one part.
+std::vector<int> PassagePlan::part_of_nodes() const {
+  DisjointSets<int> parts(rows_.rows.size());
+  auto const row_of = [&](Index n) { return rows_.row_of_zone[std::size_t(mesh_.mesh().zone_of(n))]; };
+  std::vector<int> out;
+  for (Index n = 0; n < mesh_.n_nodes(); ++n) out.push_back(row_of(n));
+  if (PreparedUnstructured const* const elements = PlanAccess::elements(motion_.plan()))
+    for (std::size_t n = 0; n < out.size(); ++n)
+      parts.join(out[n], out[std::size_t(elements->graph.representative[n])]);
+  for (int& part : out) part = parts.root(part);
+  return out;
 }
 
 MeshForMessages PassagePlan::for_messages() const {

@@ -5,6 +5,7 @@
 #include <gridmorph/run/wheel_setup.hpp>
 #include <gridmorph/wheel/wheel_mesh.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,25 +30,49 @@ class WheelPassage {
   LoadedMesh loaded_;
 };
 
-/// One plan for all passages.
+/// One plan for all passages, and one guard.
 class PassagePlan {
  public:
-  /// Case file and mesh must outlive the plan. Throws MeshError, MotionError, PlanError.
+  /// Case file, mesh and rows must outlive the plan. Throws MeshError, MotionError, PlanError.
   PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelRows const& rows, WheelSetup const& setup);
 
   [[nodiscard]] WheelMotion const& motion() const { return motion_; }
   [[nodiscard]] PassageMotions const& passages() const { return motion_.passages(); }
   /// The same motions at another time: passages() is then of that.
   void move(std::vector<Motion> const& motions) { motion_.move(motions); }
-  /// Moves the sector from its baseline by what a passage's boundary does; elements are smoothed around those that came
-  /// out bad.
-  GuardReport morph(std::vector<Vec3> const& boundary, Coordinates& morphed);
+  /// Moves the sector from its baseline by what a passage's boundary does.
+  void morph(std::vector<Vec3> const& boundary, Coordinates& morphed);
+
+  /// Whether the case file asks for smoothing of blocks.
+  [[nodiscard]] bool smooths_blocks() const { return mesh_.is_structured() && smooth_; }
+  /// Smooths around cells that came out bad: elements as guard() does; blocks where the case file says so, each row by
+  /// itself, so that rows of equal blades are alike in all passages; nothing after freeze_recorded().
+  GuardReport relax(Coordinates& morphed) const;
+  /// Remembers where a passage of blocks lost its shape: relax() then does the same to all of them at all times, so
+  /// that meshes do not jump.
+  void freeze(Coordinates const& morphed);
+  /// Cells that did.
+  [[nodiscard]] std::size_t n_frozen() const { return frozen_ ? frozen_->cells.size() : 0; }
+  /// Remembers what became of a passage that morph() brings to `plain`. Throws ConfigError beyond
+  /// SmoothingRecord::most.
+  void record(std::vector<Vec3> const& boundary, Coordinates const& plain, Coordinates const& guarded);
+  /// From here on morph() does what was recorded, linear in the displacement of each row, and relax() nothing.
+  SmoothingMap const& freeze_recorded();
+
   [[nodiscard]] MeshForMessages for_messages() const;
 
  private:
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+
+  [[nodiscard]] std::vector<int> part_of_nodes() const;
+
   LoadedMesh const& mesh_;
+  WheelRows const& rows_;
+  bool smooth_;
   WheelMotion motion_;
-  Morpher<Kokkos::DefaultHostExecutionSpace> morpher_;
+  std::optional<Morpher<Exec>> morpher_;  ///< of the plan as it is
+  std::optional<FrozenSmoothing> frozen_;
+  std::optional<SmoothingRecord> record_;
 };
 
 }  // namespace gridmorph::cli

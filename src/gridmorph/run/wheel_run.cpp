@@ -1,6 +1,8 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
+#include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/report/smoothing_text.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/wheel_run.hpp>
 
@@ -83,13 +85,23 @@ void WheelRun::prepare() {
   time("quality");
   morphed_ = Coordinates(mesh_.n_nodes());
   placed_ = Coordinates(mesh_.n_nodes());
+  find_lost_shapes(*plan_);
   if (case_.guard.retry.value_or(false)) {
     retry();
     time("retries");
   }
+  if (case_.guard.freeze) {
+    freeze();
+    time("freeze");
+  }
   notes_ = sector_.loaded().notes();
   notes_.insert(notes_.end(), plan_->motion().notes().begin(), plan_->motion().notes().end());
-  if (!retried_.text.empty()) notes_.push_back(retried_.text);
+  if (plan_->n_frozen() > 0)
+    notes_.push_back(fmt::format(
+        "{} cells lose their shape in some of the steps and passages; nodes around them are smoothed in all "
+        "of them alike",
+        plan_->n_frozen()));
+  notes_.insert(notes_.end(), guarded_.notes.begin(), guarded_.notes.end());
   console_.expect({});
 }
 
@@ -124,6 +136,47 @@ void WheelRun::move_to(int step) {
   step_ = step;
 }
 
+template <class Visit>
+void WheelRun::for_each_passage(PassagePlan& plan, Visit const& visit) {
+  for (Moment const& when : setup_.moments) {
+    plan.move(setup_.at(when));
+    for (int p = 0; p < plan.passages().n_passages(); ++p)
+      if (plan.passages().first_alike(p) == p) visit(plan.passages().boundary(p));
+  }
+  plan.move(setup_.at(setup_.moments[std::size_t(step_)]));
+}
+
+void WheelRun::find_lost_shapes(PassagePlan& plan) {
+  if (!case_.sequence || !plan.smooths_blocks()) return;
+  console_.progress("looking for cells that lose their shape");
+  for_each_passage(plan, [&](std::vector<Vec3> const& boundary) {
+    plan.morph(boundary, morphed_);
+    plan.freeze(morphed_);
+  });
+  time("guard");
+}
+
+void WheelRun::freeze() {
+  PassageMotions const& passages = plan_->passages();
+  int n_different = 0;
+  for (int p = 0; p < passages.n_passages(); ++p) n_different += passages.first_alike(p) == p ? 1 : 0;
+  std::vector<int> const some = some_steps(n_different * int(setup_.moments.size()), SmoothingRecord::most);
+  Coordinates plain(mesh_.n_nodes());
+  int number = 0;
+  std::size_t recorded = 0;
+  for_each_passage(*plan_, [&](std::vector<Vec3> const& boundary) {
+    if (recorded == some.size() || some[recorded] != number++) return;
+    console_.progress(fmt::format("what the guard does in passage {} of {}", ++recorded, some.size()));
+    plan_->morph(boundary, plain);
+    plan_->morph(boundary, morphed_);
+    (void)plan_->relax(morphed_);
+    plan_->record(boundary, plain, morphed_);
+  });
+  SmoothingMap const& map = plan_->freeze_recorded();
+  guarded_.notes.push_back(describe(map));
+  guarded_.json["frozen_guard"] = frozen_guard_json(map);
+}
+
 /// Where the worst passage falls short: other recipes for it, and the best of them for all passages and steps.
 void WheelRun::retry() {
   auto const trial_of = [&](PassagePlan& by, std::vector<Vec3> const& boundary) {
@@ -151,7 +204,7 @@ void WheelRun::retry() {
   auto const at_worst = setup_.at(setup_.moments[std::size_t(worst_step)]);
   std::unique_ptr<CaseFile> trying;  // plans refer to theirs
   std::unique_ptr<PassagePlan> other;
-  retried_ = RecipeSearch{
+  Retried retried = RecipeSearch{
       .case_file = case_,
       .unstructured = !mesh_.is_structured(),
       .chains = false,
@@ -163,6 +216,7 @@ void WheelRun::retry() {
             other.reset();
             trying = std::make_unique<CaseFile>(recipe);
             other = plan_of(*trying);
+            find_lost_shapes(*other);
             other->move(at_worst);
             return trial_of(*other, other->passages().boundary(worst));
           },
@@ -173,17 +227,19 @@ void WheelRun::retry() {
             step_ = worst_step;
             recipe_ = std::move(trying);
           }}.run(first);
-  retried_.json["passage"] = worst + 1;
+  retried.json["passage"] = worst + 1;
   std::string where = fmt::format("passage {}", worst + 1);
   if (case_.sequence) {
-    retried_.json["step"] = worst_step + 1;
+    retried.json["step"] = worst_step + 1;
     where += fmt::format(" of step {}", worst_step + 1);
   }
-  if (!retried_.text.empty()) retried_.text = fmt::format("{}, the worst one: {}", where, retried_.text);
+  if (!retried.text.empty()) guarded_.notes.push_back(fmt::format("{}, the worst one: {}", where, retried.text));
+  guarded_.json["retry"] = std::move(retried.json);
 }
 
 GuardReport WheelRun::morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed) {
-  GuardReport const report = plan.morph(boundary, morphed);
+  plan.morph(boundary, morphed);
+  GuardReport const report = plan.relax(morphed);
   time("morph");
   return report;
 }
@@ -206,14 +262,15 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   return passage;
 }
 
-void WheelRun::take_worst(int passage, QualityReport const& quality, Coordinates const& morphed) {
+void WheelRun::take_worst(WorstPassage& worst, int passage, QualityReport const& quality,
+                          Coordinates const& morphed) const {
   Badness const badness = badness_of(quality);
-  if (worst_->passage >= 0 && !(worst_->badness < badness)) return;
-  worst_->passage = passage;
-  worst_->badness = badness;
-  if (worst_->morphed.size() == 0) worst_->morphed = Coordinates(morphed.size());
-  for (auto const& [to, from] : {std::pair(worst_->morphed.x, morphed.x), std::pair(worst_->morphed.y, morphed.y),
-                                 std::pair(worst_->morphed.z, morphed.z)})
+  if (worst.passage >= 0 && !(worst.badness < badness)) return;
+  worst.passage = passage;
+  worst.badness = badness;
+  if (worst.morphed.size() == 0) worst.morphed = Coordinates(morphed.size());
+  for (auto const& [to, from] : {std::pair(worst.morphed.x, morphed.x), std::pair(worst.morphed.y, morphed.y),
+                                 std::pair(worst.morphed.z, morphed.z)})
     Kokkos::deep_copy(exec_, to, from);
   exec_.fence();
 }
@@ -272,6 +329,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
   made.whole.certificate.emplace();
   made.whole.unstructured = baseline_.unstructured;
   for (Zone const& zone : wheel_.mesh.zones) made.whole.zone_names.push_back(zone.name);
+  if (keeps_worst_) made.worst.emplace();
   auto seams = new_seams();
   int last = -1, next = 0;
   int const n_passages = motions.n_passages(), n_steps = int(setup_.moments.size());
@@ -285,7 +343,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       last = p;
       int const same = motions.first_alike(p);  // before p: it has been measured
       made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
-      if (same == p && worst_) take_worst(p, made.passages.back().quality, morphed_);
+      if (same == p && made.worst) take_worst(*made.worst, p, made.passages.back().quality, morphed_);
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
             fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
@@ -391,7 +449,7 @@ nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelR
   nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
   json["case_file"] = case_file.source.string();
   json["input"] = case_file.input.string();
-  if (!run.retried().is_null()) json["retry"] = run.retried();
+  json.update(run.guarded().json);
   return json;
 }
 

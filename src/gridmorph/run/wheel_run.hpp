@@ -21,13 +21,6 @@ namespace gridmorph::cli {
 /// Takes a zone of the wheel, in the order of its file.
 using ZoneSink = std::function<void(int zone, double const* x, double const* y, double const* z)>;
 
-/// The passage whose cells came out worst.
-struct WorstPassage {
-  int passage = -1;  ///< none yet
-  Badness badness;
-  Coordinates morphed;  ///< where the sector is
-};
-
 class WheelRun {
  public:
   /// Reads the passage. The case file must outlive the run.
@@ -39,14 +32,14 @@ class WheelRun {
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
   /// What went wrong in the first passage with inverted cells.
   [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
-  [[nodiscard]] nlohmann::json const& retried() const { return retried_.json; }
+  /// What other recipes and freezing did.
+  [[nodiscard]] Guarded const& guarded() const { return guarded_; }
 
-  /// Plans once for all passages and times, measures the baseline, and tries other recipes where the case file says so.
-  /// Throws MotionError where blades in a wave do not come back after a period.
+  /// Plans once for all passages and times, measures the baseline, and tries other recipes and freezes the guard where
+  /// the case file says so. Throws MotionError where blades in a wave do not come back after a period.
   void prepare();
   /// From here on make() keeps the mesh of the worst passage. Cost: a copy of it.
-  void keep_worst() { worst_.emplace(); }
-  [[nodiscard]] WorstPassage const& worst() const { return *worst_; }
+  void keep_worst() { keeps_worst_ = true; }
   [[nodiscard]] NearCells const& near() const { return quality_.near; }
 
   /// The wheel at a step, passage by passage.
@@ -62,12 +55,20 @@ class WheelRun {
   [[nodiscard]] std::unique_ptr<PassagePlan> plan_of(CaseFile const& case_file) const {
     return std::make_unique<PassagePlan>(sector_, case_file, rows_, setup_);
   }
+  /// visit(boundary displacement) for every passage that differs from those before it, of every step. The plan goes to
+  /// the step of plan_ in the end.
+  template <class Visit>
+  void for_each_passage(PassagePlan& plan, Visit const& visit);
+  /// Where blocks are smoothed over time: what is smoothed is then the same in all passages and steps.
+  void find_lost_shapes(PassagePlan& plan);
   void retry();
+  /// What the guard does to passages becomes a part of the plan.
+  void freeze();
   void check_wave() const;
   void move_to(int step);
   GuardReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
-  void take_worst(int passage, QualityReport const& quality, Coordinates const& morphed);
+  void take_worst(WorstPassage& worst, int passage, QualityReport const& quality, Coordinates const& morphed) const;
   [[nodiscard]] std::vector<Seams> new_seams() const;
   /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of
   /// the sector.
@@ -84,7 +85,7 @@ class WheelRun {
   StepTimes times_;
   std::vector<std::string> notes_;
   QualityReport baseline_;
-  Retried retried_;
+  Guarded guarded_;
   Diagnosis worst_of_;
   WheelPassage sector_;
   Mesh const& mesh_;
@@ -98,7 +99,7 @@ class WheelRun {
   std::unique_ptr<PassagePlan> plan_;
   int step_ = 0;  ///< that the plan's passages are of
   Coordinates morphed_, placed_;
-  std::optional<WorstPassage> worst_;
+  bool keeps_worst_ = false;
 };
 
 /// Whether cells are inverted that the baseline has sound.
@@ -111,8 +112,10 @@ nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelR
 /// Why a wheel is not written.
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what);
 
-/// A wheel at every step of [sequence], into one file per step or one with a series. Returns the exit status.
-int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::filesystem::path const& output,
-                   std::optional<std::filesystem::path> const& report, Console& console);
+/// `gridmorph wheel` at one time: output of [wheel], report and page as [output] says. typed: the command line, for the
+/// page. Returns the exit status. Throws ConfigError before any work when an output cannot be written where it should.
+int wheel_once(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed = {});
+/// The same at every step of [sequence], into one file per step or one with a series.
+int wheel_sequence(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed = {});
 
 }  // namespace gridmorph::cli

@@ -1,9 +1,10 @@
 // A wheel over time: every step of [sequence] with one plan for all passages and steps.
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/run/ending.hpp>
-#include <gridmorph/run/run.hpp>
 #include <gridmorph/run/run_files.hpp>
 #include <gridmorph/run/step_files.hpp>
+#include <gridmorph/run/wheel_page.hpp>
 #include <gridmorph/run/wheel_run.hpp>
 
 #include <fmt/format.h>
@@ -82,75 +83,126 @@ std::vector<std::string> failures_of_steps(std::vector<WheelStep> const& steps) 
   return out;
 }
 
+class WheelSequence {
+ public:
+  WheelSequence(CaseFile const& case_file, SequenceOptions options, Console& console, std::string const& typed)
+      : case_file_(case_file),
+        options_(std::move(options)),
+        console_(console),
+        page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
+        run_(case_file, console) {
+    if (page_) run_.keep_worst();
+  }
+
+  int operator()() {
+    run_.prepare();
+    make_steps();
+    written_ = !inverted_ || case_file_.guard.write_inverted;
+    result_ = run_.result(std::move(worst_made_));
+    draw_page();
+    return end();
+  }
+
+ private:
+  void make_steps() {
+    files_.emplace(options_, run_.wheel().mesh);
+    if (files_->wants_baseline()) files_->write_baseline([&](ZoneSink const& sink) { run_.make_baseline(sink); });
+    for (int step = 0; step < options_.steps; ++step) make_step(step);
+    worst_ = worst_step(steps_);
+  }
+
+  void make_step(int step) {
+    WheelMade made;
+    // Once a step cannot be used the files are not needed; the table still says how the others fare.
+    if (inverted_ && !case_file_.guard.write_inverted)
+      made = run_.make(step, [](int, double const*, double const*, double const*) {});
+    else
+      files_->add([&](ZoneSink const& sink) { made = run_.make(step, sink); });
+    run_.time("write");
+    inverted_ = inverted_ || any_inverted(made);
+    steps_.push_back(wheel_step(options_.time_at(step), made));
+    if (worst_step(steps_) + 1 == steps_.size()) worst_made_ = std::move(made);
+  }
+
+  void draw_page() {
+    if (!page_) return;
+    console_.progress("drawing the page");
+    Stopwatch watch;
+    fill_wheel_page(run_, case_file_, result_, *page_);
+    result_.times.push_back({"page", watch.lap()});
+  }
+
+  [[nodiscard]] nlohmann::json json() const {
+    nlohmann::json json = wheel_json(run_, case_file_, result_);
+    nlohmann::json list = wheel_steps_json(steps_);
+    for (std::size_t s = 0; s < steps_.size() && one_file_per_step(options_); ++s)
+      list[s]["file"] = step_path(options_, int(s)).string();
+    json["sequence"] = {{"period", options_.period},
+                        {"periods", options_.periods},
+                        {"worst_step", worst_ + 1},
+                        {"steps", std::move(list)}};
+    return json;
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string const tips = wheel_clearances(steps_);
+    return wheel_steps_table(steps_) + "\nall steps\n\n" + passages_over_time(steps_, result_) +
+           (tips.empty() ? "" : "\n" + tips) + fmt::format("\nstep {}, the worst one\n\n", worst_ + 1) +
+           wheel_text(run_, result_);
+  }
+
+  int end() {
+    OutputOptions const& outputs = case_file_.output_options;
+    std::vector<std::string> const failures = failures_of_steps(steps_);
+    return conclude(
+        {.output = options_.output,
+         .report = outputs.report,
+         .page = outputs.page,
+         .written = written_,
+         .falls_short = !failures.empty(),
+         .json = [&] { return json(); },
+         .page_text =
+             [&](nlohmann::json const& report) { return page_->text(wheel_page_json(case_file_, result_, report)); },
+         .write =
+             [&] {
+               if (written_) files_->commit();
+             },
+         .text = [&] { return text(); },
+         .wrote = wrote_text(options_),
+         .also_wrote = wrote_report(outputs.report) + wrote_report(outputs.page),
+         .warnings = failures,
+         .refusal =
+             [&] {
+               return wheel_refusal(run_, options_.output, "steps have cells inverted that were not in the baseline");
+             }},
+        console_);
+  }
+
+  CaseFile const& case_file_;
+  SequenceOptions options_;
+  Console& console_;
+  std::optional<RunPage> page_;
+  WheelRun run_;
+  std::optional<WheelFiles> files_;
+  std::vector<WheelStep> steps_;
+  std::size_t worst_ = 0;
+  WheelMade worst_made_;
+  WheelResult result_;
+  bool inverted_ = false, written_ = false;
+};
+
 }  // namespace
 
-int wheel_sequence(CaseFile const& case_file, MeshSource const& file, std::filesystem::path const& output,
-                   std::optional<std::filesystem::path> const& report, Console& console) {
+int wheel_sequence(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
   SequenceOptions options = *case_file.sequence;
-  options.output = output;
+  options.output = case_file.wheel->output;
   RunFiles outputs;
   for (int step = 0; step < (one_file_per_step(options) ? options.steps : 1); ++step)
     outputs.push_back({"wheel", step_path(options, step)});
-  if (report) outputs.push_back({"report", *report});
+  if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});
+  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
   check_run_files(inputs_of(case_file, file), outputs);
-
-  WheelRun run(case_file, console);
-  run.prepare();
-  WheelFiles files(options, run.wheel().mesh);
-  if (files.wants_baseline()) files.write_baseline([&](ZoneSink const& sink) { run.make_baseline(sink); });
-  std::vector<WheelStep> steps;
-  WheelMade worst;
-  bool inverted = false;
-  for (int step = 0; step < options.steps; ++step) {
-    WheelMade made;
-    // Once a step cannot be used the files are not needed; the table still says how the others fare.
-    if (inverted && !case_file.guard.write_inverted)
-      made = run.make(step, [](int, double const*, double const*, double const*) {});
-    else
-      files.add([&](ZoneSink const& sink) { made = run.make(step, sink); });
-    run.time("write");
-    inverted = inverted || any_inverted(made);
-    steps.push_back(wheel_step(options.time_at(step), made));
-    if (worst_step(steps) + 1 == steps.size()) worst = std::move(made);
-  }
-  std::size_t const at = worst_step(steps);
-  bool const written = !inverted || case_file.guard.write_inverted;
-  WheelResult const result = run.result(std::move(worst));
-  std::vector<std::string> const failures = failures_of_steps(steps);
-  return conclude(
-      {.output = output,
-       .report = report,
-       .written = written,
-       .falls_short = !failures.empty(),
-       .json =
-           [&] {
-             nlohmann::json json = wheel_json(run, case_file, result);
-             nlohmann::json list = wheel_steps_json(steps);
-             for (std::size_t s = 0; s < steps.size() && one_file_per_step(options); ++s)
-               list[s]["file"] = step_path(options, int(s)).string();
-             json["sequence"] = {{"period", options.period},
-                                 {"periods", options.periods},
-                                 {"worst_step", at + 1},
-                                 {"steps", std::move(list)}};
-             return json;
-           },
-       .write =
-           [&] {
-             if (written) files.commit();
-           },
-       .text =
-           [&] {
-             std::string const tips = wheel_clearances(steps);
-             return wheel_steps_table(steps) + "\nall steps\n\n" + passages_over_time(steps, result) +
-                    (tips.empty() ? "" : "\n" + tips) + fmt::format("\nstep {}, the worst one\n\n", at + 1) +
-                    wheel_text(run, result);
-           },
-       .wrote = wrote_text(options),
-       .also_wrote = wrote_report(report),
-       .warnings = failures,
-       .refusal =
-           [&] { return wheel_refusal(run, output, "steps have cells inverted that were not in the baseline"); }},
-      console);
+  return WheelSequence(case_file, std::move(options), console, typed)();
 }
 
 }  // namespace gridmorph::cli

@@ -38,13 +38,19 @@ PassageStep passage_step(PassageResult const& passage) {
                   smallest(q, Measure::minimum_angle_deg),
                   newly_inverted(q),
                   {},
+                  {},
+                  {},
                   passage.clearances};
   MeasureStatistics const* worst = nullptr;
   for (auto const* region : {&q.near_field, &q.far_field}) {
     auto const& measure = (*region)[Measure::determinant_3x3x3];
     if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
   }
-  if (worst != nullptr) out.place = worst_place(q, *worst);
+  if (worst == nullptr) return out;
+  out.place = worst_place(q, *worst);
+  out.zone = q.zone_names.at(std::size_t(worst->worst_zone));
+  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
+  if (q.unstructured) out.cell.resize(1);
   return out;
 }
 
@@ -84,6 +90,17 @@ std::string line(std::string const& passage, std::string const& blade, std::size
   return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12}\n", passage, blade, width, displacement,
                      q.near_field.inverted + q.far_field.inverted, smallest(q, Measure::determinant_3x3x3),
                      smallest(q, Measure::minimum_angle_deg), aspect_ratio);
+}
+
+/// {"value", "zone", "cell" or "element"}; null where nothing was measured.
+nlohmann::json min_determinant_json(PassageStep const& passage) {
+  if (passage.zone.empty()) return nullptr;
+  nlohmann::json out{{"value", passage.determinant}, {"zone", passage.zone}};
+  if (passage.cell.size() == 1)
+    out["element"] = passage.cell[0];
+  else
+    out["cell"] = passage.cell;
+  return out;
 }
 
 }  // namespace
@@ -136,6 +153,18 @@ WheelStep wheel_step(double time, WheelMade const& made) {
   return out;
 }
 
+double WheelStep::largest_displacement() const {
+  double out = 0;
+  for (PassageStep const& passage : passages) out = std::max(out, passage.largest_displacement);
+  return out;
+}
+
+Index WheelStep::newly_inverted() const {
+  Index out = 0;
+  for (PassageStep const& passage : passages) out += passage.newly_inverted;
+  return out;
+}
+
 std::size_t worst_step(std::vector<WheelStep> const& steps) {
   std::size_t worst = 0;
   for (std::size_t s = 1; s < steps.size(); ++s)
@@ -159,15 +188,10 @@ std::string wheel_steps_table(std::vector<WheelStep> const& steps) {
   for (std::size_t s = 0; s < steps.size(); ++s) {
     if (s % stride != 0 && s != worst) continue;
     WheelStep const& step = steps[s];
-    double largest = 0;
-    Index inverted = 0;
-    for (auto const& p : step.passages) {
-      largest = std::max(largest, p.largest_displacement);
-      inverted += p.newly_inverted;
-    }
     PassageStep const& at = step.passages[step.worst];
-    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {:>7}  {}{}\n", s + 1, step.time, largest,
-                        at.determinant, inverted, step.worst + 1, at.place, s == worst ? "  <- worst" : "");
+    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {:>7}  {}{}\n", s + 1, step.time,
+                        step.largest_displacement(), at.determinant, step.newly_inverted(), step.worst + 1, at.place,
+                        s == worst ? "  <- worst" : "");
   }
   return text;
 }
@@ -207,10 +231,15 @@ nlohmann::json wheel_steps_json(std::vector<WheelStep> const& steps) {
                           {"newly_inverted", now.newly_inverted}});
       if (!now.clearances.empty()) passages.back()["clearances"] = clearance_json(now.clearances);
     }
+    WheelStep const& step = steps[s];
     list.push_back({{"step", s + 1},
-                    {"time", steps[s].time},
-                    {"worst_passage", steps[s].worst + 1},
-                    {"shortfalls", steps[s].failures},
+                    {"time", step.time},
+                    {"largest_displacement", step.largest_displacement()},
+                    {"newly_inverted", step.newly_inverted()},
+                    {"worst_passage", step.worst + 1},
+                    {"min_determinant", min_determinant_json(step.passages[step.worst])},
+                    {"shortfall", step.failures.empty() ? nlohmann::json() : nlohmann::json(step.failures.front())},
+                    {"shortfalls", step.failures},
                     {"passages", std::move(passages)}});
   }
   return list;

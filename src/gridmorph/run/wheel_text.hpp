@@ -5,12 +5,14 @@
 #include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/report/step_times.hpp>
 #include <gridmorph/report/tip_clearance.hpp>
+#include <gridmorph/run/recipe.hpp>
 #include <gridmorph/run/wheel_setup.hpp>
 #include <gridmorph/wheel/seams.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,12 +27,20 @@ struct PassageResult {
   std::vector<TipClearance> clearances = {};  ///< of the rows that have this passage; places as the wheel has them
 };
 
+/// The passage whose cells came out worst.
+struct WorstPassage {
+  int passage = -1;  ///< none yet
+  Badness badness;
+  Coordinates morphed;  ///< where the sector is
+};
+
 /// A wheel at one time.
 struct WheelMade {
   std::vector<PassageResult> passages;
   QualityReport whole;  ///< of the wheel as it is written: certificate and zone names, nothing else
   SeamGap gap;          ///< the largest of all rows
   std::vector<std::string> notes;
+  std::optional<WorstPassage> worst = {};  ///< where it was kept
 };
 
 struct WheelResult : WheelMade {
@@ -45,7 +55,9 @@ struct PassageStep {
   double determinant = 0;  ///< smallest 3x3x3
   double angle_deg = 0;    ///< smallest
   Index newly_inverted = 0;
-  std::string place;  ///< of the smallest determinant
+  std::string place;           ///< of the smallest determinant
+  std::string zone = {};       ///< that it is in; empty where nothing was measured
+  std::vector<int> cell = {};  ///< 1-based indices; of elements the number
   std::vector<TipClearance> clearances = {};
 
   /// Which of two is the worse one: inverted cells first.
@@ -60,6 +72,10 @@ struct WheelStep {
   std::vector<PassageStep> passages;
   std::vector<std::string> failures;
   std::size_t worst = 0;  ///< number of the worst passage
+
+  [[nodiscard]] double largest_displacement() const;
+  /// Cells of all passages.
+  [[nodiscard]] Index newly_inverted() const;
 };
 WheelStep wheel_step(double time, WheelMade const& made);
 /// Number of the worst step.

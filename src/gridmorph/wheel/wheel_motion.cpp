@@ -77,12 +77,15 @@ void WheelMotion::plan_blocks(Asked const& asked) {
   detail::append_notes(notes_, made.plan.notes);
   requests_ = made.boundary;
   rotations_ = made.plan.rotations;
-  plan_ = PlanAccess::of(
-      PreparedMorph{std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), {}, asked.options});
-
   add_rules([&](int m) {
     return std::make_shared<BoundaryMotion const>(boundary, resolve(sector, asked.motions[std::size_t(m)]));
   });
+  // Where nothing was opened the plan has the rules themselves: guards look for periodic sides that follow a blade.
+  if (std::none_of(asked.open.begin(), asked.open.end(), [](char open) { return open != 0; }))
+    surface = rules_.at(same_rules_[used_.front()])->with(asked.motions[std::size_t(used_.front())]);
+  plan_ = PlanAccess::of(
+      PreparedMorph{std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), {}, asked.options});
+
   auto const nodes = plan_->boundary_nodes();
   add_passages(asked, nodes,
                blade_shares(*boundary, asked.links, asked.rows, resolved, asked.open,

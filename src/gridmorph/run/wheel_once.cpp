@@ -1,0 +1,94 @@
+// A wheel at one time: its mesh, report and page.
+#include <gridmorph/core/stopwatch.hpp>
+#include <gridmorph/run/ending.hpp>
+#include <gridmorph/run/run_files.hpp>
+#include <gridmorph/run/wheel_page.hpp>
+#include <gridmorph/run/wheel_run.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <optional>
+
+namespace gridmorph::cli {
+
+namespace {
+
+class WheelOnce {
+ public:
+  WheelOnce(CaseFile const& case_file, Console& console, std::string const& typed)
+      : case_file_(case_file),
+        output_(case_file.wheel->output),
+        console_(console),
+        page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
+        run_(case_file, console) {
+    if (page_) run_.keep_worst();
+  }
+
+  int operator()() {
+    run_.prepare();
+    writer_.emplace(output_.string(), run_.wheel().mesh);
+    result_ = run_.result(run_.make(
+        0, [&](int zone, double const* x, double const* y, double const* z) { writer_->write_zone(zone, x, y, z); }));
+    draw_page();
+    written_ = !any_inverted(result_) || case_file_.guard.write_inverted;
+    return end();
+  }
+
+ private:
+  void draw_page() {
+    if (!page_) return;
+    console_.progress("drawing the page");
+    Stopwatch watch;
+    fill_wheel_page(run_, case_file_, result_, *page_);
+    result_.times.push_back({"page", watch.lap()});
+  }
+
+  void write() {
+    if (!written_) return;
+    writer_->commit();
+    if (page_) page_->add_output(output_);
+  }
+
+  int end() {
+    OutputOptions const& options = case_file_.output_options;
+    std::vector<std::string> const failures = failures_of(result_);
+    return conclude(
+        {.output = output_,
+         .report = options.report,
+         .page = options.page,
+         .written = written_,
+         .falls_short = !failures.empty(),
+         .json = [&] { return wheel_json(run_, case_file_, result_); },
+         .page_text =
+             [&](nlohmann::json const& json) { return page_->text(wheel_page_json(case_file_, result_, json)); },
+         .write = [&] { write(); },
+         .text = [&] { return wheel_text(run_, result_); },
+         .wrote = fmt::format("\nwrote {}\n", output_.string()),
+         .also_wrote = wrote_report(options.report) + wrote_report(options.page),
+         .warnings = failures,
+         .refusal = [&] { return wheel_refusal(run_, output_, "cells are inverted that were not in the baseline"); }},
+        console_);
+  }
+
+  CaseFile const& case_file_;
+  std::filesystem::path const& output_;
+  Console& console_;
+  std::optional<RunPage> page_;
+  WheelRun run_;
+  std::optional<MeshFileWriter> writer_;
+  WheelResult result_;
+  bool written_ = false;
+};
+
+}  // namespace
+
+int wheel_once(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
+  RunFiles outputs = outputs_of(case_file.wheel->output, case_file.output_options.report);
+  outputs.front().what = "wheel";  // CGNS, whatever the sector is
+  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
+  check_run_files(inputs_of(case_file, file), outputs);
+  return WheelOnce(case_file, console, typed)();
+}
+
+}  // namespace gridmorph::cli
