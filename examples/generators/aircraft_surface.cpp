@@ -66,7 +66,7 @@ class Placer {
   /// axes: of the lattice along the chord, across and along the span; first and last slab along the span.
   Vec3 lifting(LiftingSurface const& surface, WallFace const& face, Index3 const& p, Index3 const& axes, int first,
                int last) {
-    auto const [along, across, span] = axes;
+    int const along = axes[0], across = axes[1], span = axes[2];
     bool const half = face.part == Part::vtail;  // beside the symmetry plane
     double const c = even_share(face.cell, across, p[across]);
     double const v = on_cube(half ? c : 2 * c - 1);

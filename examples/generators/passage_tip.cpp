@@ -32,7 +32,8 @@ std::array<double, 2> core_ends(Airfoil const& airfoil, std::array<std::vector<d
 void fill_tip(PassageOptions const& options, Airfoil const& airfoil, std::array<std::vector<double>, 4> const& ring_phi,
               std::array<PieceNodes, n_pieces>& pieces) {
   PieceNodes& core = pieces[tip_core];
-  auto const [begin, end] = core_ends(airfoil, ring_phi);
+  auto const ends = core_ends(airfoil, ring_phi);
+  double const begin = ends[0], end = ends[1];
   // A side of the core: the contour, drawn towards the camber line and off the edges.
   auto const side = [&](std::vector<double> const& phi, int i, int last) {
     double const first_u = along_camber(phi.front()), last_u = along_camber(phi.back());

@@ -366,9 +366,9 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
       return Stop{0, text.str()};
     }
     CLI::App const* chosen = nullptr;
-    for (auto const& [subcommand, command] : commands)
-      if (std::any_of(argv + 1, argv + argc, [&](char const* word) { return subcommand->get_name() == word; }))
-        chosen = subcommand;
+    for (auto const& command : commands)
+      if (std::any_of(argv + 1, argv + argc, [&](char const* word) { return command.first->get_name() == word; }))
+        chosen = command.first;
     std::string const help = "; see gridmorph " + (chosen != nullptr ? chosen->get_name() + " " : "") + "--help";
     if (std::string const text = unknown_option(app, chosen, argc, argv); !text.empty()) return Stop{2, text + help};
     return Stop{2, std::string(e.what()) + help};

@@ -258,7 +258,8 @@ void WallRoots::turn_as_resolved(CoordinatePrecision const& precision, double ro
     ways.pop();
     if (source[std::size_t(r)] >= 0) continue;
     source[std::size_t(r)] = from;
-    for_neighbours(r, [&](std::int32_t other, double step) {
+    // Named one by one: clang below 16 captures no bindings.
+    for_neighbours(r, [&, length = length, from = from](std::int32_t other, double step) {
       if (!resolved[std::size_t(other)] && source[std::size_t(other)] < 0) ways.emplace(length + step, other, from);
     });
   }
