@@ -11,8 +11,8 @@
 namespace gridmorph::testing {
 namespace {
 
-std::vector<std::string> const commands{"morph",     "inspect", "plan", "quality", "wheel", "fillet",
-                                        "hexahedra", "surface", "view", "keys",    "demo"};
+std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel", "fillet",
+                                        "blocks", "hexahedra", "surface", "view",    "keys",  "demo"};
 
 class CommandInterface : public CommandTest {
  protected:
@@ -45,6 +45,7 @@ class CommandInterface : public CommandTest {
             {"wheel wheel.toml", "passages"},
             {"fillet passage.cgns -b blade -w hub --radius 0.002 -o filled.cgns", "stations"},
             {"hexahedra passage.cgns -o elements.cgns", "hexahedra"},
+            {"blocks elements.cgns -o found.cgns", "blocks"},
             {"surface passage.cgns -p blade -o out.stl", "facets"},
             {"keys guard", "keys"},
             {"demo passage -n 10000 -m chord -d made", "morphs"}};
