@@ -128,7 +128,8 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
   auto made = std::make_shared<SmoothingMap>();
   SmoothingMap& out = *made;
   out.n_nodes = plan_.n_nodes();
-  out.n_boundary = Index(count_boundary_nodes(plan_));
+  std::vector<Index> const boundary_nodes = plan_.boundary_nodes();
+  out.n_boundary = Index(boundary_nodes.size());
   std::vector<std::vector<Vec3> const*> u;
   for (Recorded const& r : recorded_) {
     u.push_back(&r.boundary);
@@ -140,8 +141,7 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
     return options.part_of_node.empty() ? 0 : options.part_of_node[std::size_t(node)];
   };
   std::map<int, std::vector<std::size_t>> places;  // of boundary nodes, by part
-  for (std::size_t b = 0; b < std::size_t(out.n_boundary); ++b)
-    places[part_of(blocks_ ? blocks_->plan().boundary_nodes[b] : Index(elements_->plan.known[b]))].push_back(b);
+  for (std::size_t b = 0; b < boundary_nodes.size(); ++b) places[part_of(boundary_nodes[b])].push_back(b);
   std::set<int> moved;
   for (Index const node : out.node) moved.insert(part_of(node));
   std::vector<Mode> modes;

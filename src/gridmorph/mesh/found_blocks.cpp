@@ -16,7 +16,7 @@ namespace gridmorph {
 namespace {
 
 using detail::CellSide, detail::cell_side, detail::corner_place, detail::HexLinks, detail::side_at, detail::side_axis,
-    detail::side_end, detail::SideLink;
+    detail::side_end, detail::HexLink;
 
 /// An edge of a cell by its two sides there.
 struct CellEdge {
@@ -44,7 +44,7 @@ struct Around {
 
 /// The cell behind `at.through`, which is left by its other side at the same edge. Only where something lies there.
 Around next(HexLinks const& links, Around const& at) {
-  SideLink const link = links.link(cell_side(at.cell, at.through));
+  HexLink const link = links.link(cell_side(at.cell, at.through));
   // The side that was begun at lies at an end of an axis of this cell; there it goes on along the same axis.
   int const axis = side_axis[std::size_t(at.other)], there = link.turn->axes.axis[std::size_t(axis)];
   bool const flipped = link.turn->axes.sign[std::size_t(axis)] < 0;
@@ -180,7 +180,7 @@ class Search {
     for (int side = 0; side < 6; ++side) {
       CellSide const s = cell_side(e, side);
       if (links_.behind(s) < 0 || sheets_.is_limit(s)) continue;
-      SideLink const link = links_.link(s);
+      HexLink const link = links_.link(s);
       int const axis = side_axis[std::size_t(side)];
       Placed there{own.at, link.turn->axes.inverse().then(own.axes)};
       int const outwards = side_end[std::size_t(side)] == 1 ? 1 : -1;

@@ -76,7 +76,7 @@ class Sides {
   [[nodiscard]] Behind what_is_behind(Index32 e, int s) const {
     CellSide const side = cell_side(e, s);
     if (links_.behind(side) >= 0) {
-      SideLink const link = links_.link(side);
+      HexLink const link = links_.link(side);
       // The one that comes first has the interface.
       auto const order = [&](Index32 cell, int of) { return std::tuple(places_.block(cell), places_.at(cell), of); };
       return order(e, s) < order(link.cell, link.side) ? across(e, s, link) : Behind();
@@ -97,7 +97,7 @@ class Sides {
   }
   [[nodiscard]] int patch_of(Index32 face) const { return std::max(-1, face_patches_.patch[std::size_t(face)]); }
 
-  [[nodiscard]] Behind across(Index32 e, int s, SideLink const& link) const {
+  [[nodiscard]] Behind across(Index32 e, int s, HexLink const& link) const {
     Behind out;
     out.block = places_.block(link.cell);
     out.to_donor.orientation = places_.axes(e).inverse().then(link.turn->axes).then(places_.axes(link.cell));

@@ -8,8 +8,8 @@ namespace gridmorph::detail {
 
 namespace {
 
-SideTurn turned(int from, int to, int turn) {
-  SideTurn out;
+HexTurn turned(int from, int to, int turn) {
+  HexTurn out;
   int const start = turn / 2;
   bool const reversed = turn % 2 != 0;
   auto const own = corners_of_side(from), other = corners_of_side(to);
@@ -35,15 +35,15 @@ SideTurn turned(int from, int to, int turn) {
   return out;
 }
 
-std::array<SideTurn, 288> all_turns() {
-  std::array<SideTurn, 288> out;
+std::array<HexTurn, 288> all_turns() {
+  std::array<HexTurn, 288> out;
   for (int n = 0; n < 288; ++n) out[std::size_t(n)] = turned(n / 48, n / 8 % 6, n % 8);
   return out;
 }
 
 }  // namespace
 
-std::array<SideTurn, 288> const side_turns = all_turns();
+std::array<HexTurn, 288> const side_turns = all_turns();
 
 HexLinks::HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology)
     : mesh_(mesh), topology_(topology), representative_(coincident_nodes(mesh)) {
@@ -115,7 +115,7 @@ int HexLinks::turn_between(CellSide from, CellSide to, Same const& same) const {
   return -1;
 }
 
-std::optional<SideLink> HexLinks::periodic(CellSide s) const {
+std::optional<HexLink> HexLinks::periodic(CellSide s) const {
   Index32 const f = face_[std::size_t(s)];
   if (f < 0) return {};
   Index32 const across = topology_.boundary.across[std::size_t(f)], c = topology_.boundary.connection[std::size_t(f)];

@@ -30,19 +30,19 @@ using CellSide = Index32;
 inline CellSide cell_side(Index32 cell, int side) { return 6 * cell + side; }
 
 /// How corners and local axes of one cell go on in another, across a side that both have.
-struct SideTurn {
+struct HexTurn {
   Orientation axes;                     ///< of this cell's -> of that one's
   std::array<std::int8_t, 8> corner{};  ///< of the side's corners: theirs in that cell
 };
 
 /// Of every side with every other in all eight ways: 48 * side + 8 * other side + turn.
-extern std::array<SideTurn, 288> const side_turns;
+extern std::array<HexTurn, 288> const side_turns;
 
 /// What lies across a side.
-struct SideLink {
+struct HexLink {
   Index32 cell = -1;
   int side = -1;
-  SideTurn const* turn = nullptr;
+  HexTurn const* turn = nullptr;
 };
 
 /// The links of all sides. Cells that are no hexahedra, and sides of them, have none.
@@ -61,18 +61,18 @@ class HexLinks {
   /// What lies behind a side inside the mesh; -1: nothing.
   [[nodiscard]] CellSide behind(CellSide s) const { return partner_[std::size_t(s)]; }
   /// The link of a side that has something behind it.
-  [[nodiscard]] SideLink link(CellSide s) const { return made(s, partner_[std::size_t(s)], turn_[std::size_t(s)]); }
+  [[nodiscard]] HexLink link(CellSide s) const { return made(s, partner_[std::size_t(s)], turn_[std::size_t(s)]); }
   /// The number of a side among the boundary faces; -1 where it is none.
   [[nodiscard]] Index32 boundary_face(CellSide s) const { return face_[std::size_t(s)]; }
   /// Across a periodic connection; nothing where a side lies on none.
-  [[nodiscard]] std::optional<SideLink> periodic(CellSide s) const;
+  [[nodiscard]] std::optional<HexLink> periodic(CellSide s) const;
   /// The connection of a boundary face: 2 c, or 2 c + 1 from the donor's side.
   [[nodiscard]] Index32 connection(CellSide s) const {
     return topology_.boundary.connection[std::size_t(boundary_face(s))];
   }
 
  private:
-  static SideLink made(CellSide from, CellSide to, int turn) {
+  static HexLink made(CellSide from, CellSide to, int turn) {
     return {to / 6, to % 6, &side_turns[std::size_t(48 * (from % 6) + 8 * (to % 6) + turn)]};
   }
   /// The way in which the corners of one side are those of another, by `same(node of this, node of that)`; -1: they are
