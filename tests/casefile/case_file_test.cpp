@@ -1,6 +1,8 @@
 // What a correct case file becomes.
 #include "case_text.hpp"
 
+#include <gridmorph/morph/morph.hpp>
+
 namespace gridmorph::testing {
 namespace {
 
@@ -133,10 +135,8 @@ TEST(CaseFileText, MayHaveWindowsLineEnds) {
 }
 
 TEST(Sequence, OfVeryManyStepsSomeAreLookedAtAheadOfTimeTheFirstAndTheLastAmongThem) {
-  SequenceOptions sequence;
   for (int const steps : {1, 2, 7, 100, 99999}) {
-    sequence.steps = steps;
-    std::vector<int> const some = sequence.some_steps(100);
+    std::vector<int> const some = some_steps(steps, 100);
     EXPECT_EQ(int(some.size()), std::min(steps, 100));
     EXPECT_EQ(some.front(), 0);
     EXPECT_EQ(some.back(), steps - 1);

@@ -4,6 +4,8 @@
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 
+#include <gridmorph/morph/morph.hpp>
+
 #include <gtest/gtest.h>
 
 namespace gridmorph::test {
