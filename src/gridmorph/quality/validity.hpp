@@ -1,6 +1,7 @@
 // Is a mesh that moves still valid? Asked in every time step, answered on the device.
 #pragma once
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
 
