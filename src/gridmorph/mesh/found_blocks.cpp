@@ -60,7 +60,7 @@ bool is_regular(HexLinks const& links, Index32 cell, CellEdge const& edge) {
   for (; count <= most; ++count) {
     if (links.behind(cell_side(at.cell, at.through)) < 0) break;
     at = next(links, at);
-    if (at.cell == cell && ((at.through == edge.side && at.other == edge.other))) return count == 4;
+    if (at.cell == cell && at.through == edge.side && at.other == edge.other) return count == 4;
   }
   if (count > most) return false;
   at = {cell, edge.other, edge.side};
@@ -150,7 +150,7 @@ class Search {
       }
       while (block_[std::size_t(e)] == none) find_block(out, e);
     }
-    if (out.n_left == 0) detail::add_block_sides(mesh_, links_, face_patches, corners(out), out.mesh);
+    if (out.n_left == 0) detail::add_block_sides(mesh_, links_, face_patches, places(), out.mesh);
     finish(out);
     return out;
   }
@@ -255,7 +255,7 @@ class Search {
   }
 
   /// Of all cells, where they are.
-  [[nodiscard]] detail::CellPlaces corners(FoundBlocks const&) const {
+  [[nodiscard]] detail::CellPlaces places() const {
     return {[this](Index32 e) { return block_[std::size_t(e)]; },
             [this](Index32 e) -> Orientation const& { return placed_[std::size_t(e)].axes; },
             [this](Index32 e) -> Index3 const& { return placed_[std::size_t(e)].at; },

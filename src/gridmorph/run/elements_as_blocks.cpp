@@ -23,16 +23,16 @@ ElementsAsBlocks::ElementsAsBlocks(Mesh elements) : elements_(std::move(elements
   element_ = std::move(found.element);
   std::vector<Index32> of_representative(std::size_t(elements_.n_nodes()), -1);
   for (std::size_t n = found.node.size(); n-- > 0;) of_representative[std::size_t(found.node[n])] = Index32(n);
-  block_node_ = coincident_nodes(elements_);
+  representative_ = coincident_nodes(elements_);
+  block_node_ = representative_;
   for (Index32& n : block_node_) n = of_representative[std::size_t(n)];
 }
 
 Coordinates ElementsAsBlocks::coordinates(Coordinates const& of_blocks) const {
   Coordinates const& x = elements_.coordinates;
   Coordinates out(x.size());
-  std::vector<Index32> const representative = coincident_nodes(elements_);
   for (Index n = 0; n < x.size(); ++n) {
-    Index32 const b = block_node_[std::size_t(n)], r = representative[std::size_t(n)];
+    Index32 const b = block_node_[std::size_t(n)], r = representative_[std::size_t(n)];
     // Nodes that are one may be apart by a rounding: they move alike.
     out.set(n, b < 0 ? x[n] : r == n ? of_blocks[b] : x[n] + (of_blocks[b] - x[r]));
   }

@@ -24,8 +24,9 @@ class ElementsAsBlocks {
 
  private:
   Mesh elements_, blocks_;
-  std::vector<Index32> block_node_;  ///< (elements' nodes) a node of the blocks that lies there; -1: none
-  std::vector<Index32> element_;     ///< (cells of the blocks)
+  std::vector<Index32> representative_;  ///< coincident_nodes() of the elements
+  std::vector<Index32> block_node_;      ///< (elements' nodes) a node of the blocks that lies there; -1: none
+  std::vector<Index32> element_;         ///< (cells of the blocks)
 };
 
 }  // namespace gridmorph::cli

@@ -84,13 +84,6 @@ nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t wors
       {"period", options.period}, {"periods", options.periods}, {"worst_step", worst + 1}, {"steps", std::move(list)}};
 }
 
-/// "wrote step_1.cgns ... step_8.cgns" or "wrote series.cgns (8 steps)".
-std::string wrote_text(SequenceOptions const& options) {
-  return one_file_per_step(options) ? fmt::format("\nwrote {} ... {}\n", step_path(options, 0).string(),
-                                                  step_path(options, options.steps - 1).string())
-                                    : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
-}
-
 StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
   StepResult out;
   out.time = time;
@@ -341,7 +334,7 @@ class Sequence {
                            if (written_) files_->commit();
                          },
                      .text = [&] { return text(shortfall); },
-                     .wrote = wrote_text(options_),
+                     .wrote = wrote_steps(options_),
                      .also_wrote = wrote_report(output.report) + wrote_report(output.page),
                      .warnings = std::move(warnings),
                      .refusal =

@@ -34,6 +34,12 @@ std::filesystem::path step_path(SequenceOptions const& options, int step) {
   return options.output.parent_path() / name;
 }
 
+std::string wrote_steps(SequenceOptions const& options) {
+  return one_file_per_step(options) ? fmt::format("\nwrote {} ... {}\n", step_path(options, 0).string(),
+                                                  step_path(options, options.steps - 1).string())
+                                    : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
+}
+
 StepFiles::StepFiles(CaseFile const& case_file, LoadedMesh const& mesh)
     : case_file_(case_file), mesh_(mesh), format_(mesh_format(case_file.input.string())) {
   auto const& options = *case_file.sequence;

@@ -19,6 +19,9 @@ bool one_file_per_step(SequenceOptions const& options);
 /// the output as it is.
 std::filesystem::path step_path(SequenceOptions const& options, int step);
 
+/// "wrote step_1.cgns ... step_8.cgns" or "wrote series.cgns (8 steps)", on a line of its own.
+std::string wrote_steps(SequenceOptions const& options);
+
 /// Puts files of steps, from the first on, in place: all or none. Throws MachineError.
 void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options);
 

@@ -1,5 +1,4 @@
 // A wheel at one time: its mesh, report and page.
-#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run_files.hpp>
 #include <gridmorph/run/wheel_page.hpp>
@@ -30,20 +29,12 @@ class WheelOnce {
     writer_.emplace(output_.string(), run_.wheel().mesh);
     result_ = run_.result(run_.make(
         0, [&](int zone, double const* x, double const* y, double const* z) { writer_->write_zone(zone, x, y, z); }));
-    draw_page();
+    if (page_) draw_wheel_page(run_, case_file_, result_, *page_, console_);
     written_ = !any_inverted(result_) || case_file_.guard.write_inverted;
     return end();
   }
 
  private:
-  void draw_page() {
-    if (!page_) return;
-    console_.progress("drawing the page");
-    Stopwatch watch;
-    fill_wheel_page(run_, case_file_, result_, *page_);
-    result_.times.push_back({"page", watch.lap()});
-  }
-
   void write() {
     if (!written_) return;
     writer_->commit();

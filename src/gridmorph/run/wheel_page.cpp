@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/wheel_page.hpp>
@@ -40,12 +41,16 @@ PatchRoles roles_of_passage(Mesh const& mesh, Motion const& motion) {
 
 }  // namespace
 
-void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page) {
+void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult& result, RunPage& page,
+                     Console& console) {
+  console.progress("drawing the page");
+  Stopwatch watch;
   Mesh const& mesh = run.sector().mesh();
   WorstPassage const& worst = *result.worst;
   page.begin_passage(run.sector().loaded().pictures(), roles_of_passage(mesh, case_file.motion), mesh.coordinates);
   page.finish_passage({mesh.coordinates, worst.morphed, run.near(), {}},
                       result.passages[std::size_t(worst.passage)].quality, run.sector().loaded().kind().cells);
+  result.times.push_back({"page", watch.lap()});
 }
 
 nlohmann::json wheel_page_json(CaseFile const& case_file, WheelResult const& result, nlohmann::json const& report) {

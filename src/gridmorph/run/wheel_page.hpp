@@ -7,8 +7,9 @@
 namespace gridmorph::cli {
 
 /// Pictures and numbers of the worst passage. result: of a run with keep_worst(), over time that of the worst step.
-/// Cost: as RunPage::finish().
-void fill_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult const& result, RunPage& page);
+/// The console is told, and `result` the time that it took. Cost: as RunPage::finish().
+void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, WheelResult& result, RunPage& page,
+                     Console& console);
 
 /// What the page is made from. report: that of the wheel, with its output.
 nlohmann::json wheel_page_json(CaseFile const& case_file, WheelResult const& result, nlohmann::json const& report);

@@ -1,5 +1,4 @@
 // A wheel over time: every step of [sequence] with one plan for all passages and steps.
-#include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/output_file.hpp>
 #include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run_files.hpp>
@@ -63,12 +62,6 @@ class WheelFiles {
   std::deque<io::OutputFile> files_;
 };
 
-std::string wrote_text(SequenceOptions const& options) {
-  return one_file_per_step(options) ? fmt::format("\nwrote {} ... {}\n", step_path(options, 0).string(),
-                                                  step_path(options, options.steps - 1).string())
-                                    : fmt::format("\nwrote {} ({} steps)\n", options.output.string(), options.steps);
-}
-
 /// "step 3, passage 2: ...", of all steps.
 std::vector<std::string> failures_of_steps(std::vector<WheelStep> const& steps) {
   std::vector<std::string> out;
@@ -99,7 +92,7 @@ class WheelSequence {
     make_steps();
     written_ = !inverted_ || case_file_.guard.write_inverted;
     result_ = run_.result(std::move(worst_made_));
-    draw_page();
+    if (page_) draw_wheel_page(run_, case_file_, result_, *page_, console_);
     return end();
   }
 
@@ -122,14 +115,6 @@ class WheelSequence {
     inverted_ = inverted_ || any_inverted(made);
     steps_.push_back(wheel_step(options_.time_at(step), made));
     if (worst_step(steps_) + 1 == steps_.size()) worst_made_ = std::move(made);
-  }
-
-  void draw_page() {
-    if (!page_) return;
-    console_.progress("drawing the page");
-    Stopwatch watch;
-    fill_wheel_page(run_, case_file_, result_, *page_);
-    result_.times.push_back({"page", watch.lap()});
   }
 
   [[nodiscard]] nlohmann::json json() const {
@@ -168,7 +153,7 @@ class WheelSequence {
                if (written_) files_->commit();
              },
          .text = [&] { return text(); },
-         .wrote = wrote_text(options_),
+         .wrote = wrote_steps(options_),
          .also_wrote = wrote_report(outputs.report) + wrote_report(outputs.page),
          .warnings = failures,
          .refusal =
