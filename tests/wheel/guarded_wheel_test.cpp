@@ -1,6 +1,5 @@
 // Wheels whose passages are looked after by a guard: smoothed, or morphed with what it did frozen into the plan.
 #include "support/expect_error.hpp"
-#include "support/reduced.hpp"
 #include "wheel/element_wheel_file.hpp"
 #include "wheel/wheel_run.hpp"
 
@@ -201,7 +200,6 @@ std::string rules_of_row(std::string const& end, std::string const& dtheta) {
 }
 
 TEST_F(GuardedWheel, RowsOfEqualBladesAreAlikeWhateverOtherRowsDo) {
-  if (!everything()) GTEST_SKIP() << "half a minute, and wheels of one row are smoothed and frozen alike";
   write_mesh(folder.file("rows.cgns"), two_rows(mesh));
   std::string const text = without_layer + "[mesh]\ninput = \"rows.cgns\"\naxis = \"x\"\n" +
                            rules_of_row("", "0.54 * sin(axial / 0.05) + 0.9 * axial") +
@@ -232,7 +230,6 @@ TEST_F(GuardedWheel, RowsOfEqualBladesAreAlikeWhateverOtherRowsDo) {
 }
 
 TEST_F(GuardedWheel, OfElementsIsFrozenAsItIsSmoothed) {
-  if (!everything()) GTEST_SKIP() << "tens of seconds, and the wheel of blocks is frozen as it is smoothed";
   std::string const text = rules(large, "elements.cgns");
   auto const plain = make(text + guard("") + wheel_of(different));
   ElementWheelFile const smoothed(folder.file("wheel.cgns"));
