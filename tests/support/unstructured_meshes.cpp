@@ -164,8 +164,7 @@ Mesh periodic_flat_box(int ni, int nj, int layers) {
   Connection pair;
   pair.name = "pair";
   pair.zone = pair.donor_zone = 0;
-  pair.periodic.emplace();
-  pair.periodic->translation = {double(ni), 0, 0};
+  pair.periodic = periodic_translation({double(ni), 0, 0});
   for (Index32 n = 0; n < mesh.n_nodes(); ++n)
     for (Index32 m = 0; m < mesh.n_nodes(); ++m)
       if (mesh.coordinates.x(n) == 0 && mesh.coordinates.x(m) == ni && mesh.coordinates.y(n) == mesh.coordinates.y(m)) {

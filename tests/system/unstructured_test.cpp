@@ -67,7 +67,8 @@ TEST_F(UnstructuredRun, QualityComparesAndFallsShortWhereElementsTurnOver) {
 
 TEST_F(UnstructuredRun, MorphAndPlanAskForAWallThatMoves) {
   write("case.toml",
-        "[mesh]\ninput = \"mesh.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"*\"]\nrule = \"fixed\"\n");
+        "[mesh]\nblocks = \"off\"\ninput = \"mesh.su2\"\noutput = \"out.su2\"\n[[motion]]\npatches = [\"*\"]\n"
+        "rule = \"fixed\"\n");
   for (auto const* command : {"morph case.toml", "plan case.toml"})
     expect_bad_input(gridmorph(command), {"no wall moves", "fixed"});
 }
@@ -103,7 +104,7 @@ class UnstructuredSequence : public CommandTest {
     return text;
   }
   void write_case(std::string const& output, double amplitude) const {
-    write("case.toml", "[mesh]\ninput = \"ring.su2\"\n[sequence]\nsteps = 4\noutput = \"" + output +
+    write("case.toml", "[mesh]\nblocks = \"off\"\ninput = \"ring.su2\"\n[sequence]\nsteps = 4\noutput = \"" + output +
                            "\"\n[[motion]]\npatches = [\"body\"]\nrule = \"field\"\nmodes = [ { file = \"mode.csv\", "
                            "amplitude = " +
                            fmt::format("{}", amplitude) + ", phase_deg = 60 } ]\n");

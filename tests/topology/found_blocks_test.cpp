@@ -1,5 +1,6 @@
 // Blocks in meshes of hexahedra: whatever order, numbers and orientations a file gives the elements, and however it
 // cuts them into zones, the same blocks come out, with all cells, patches and interfaces.
+#include "support/made_bodies.hpp"
 #include "support/mesh_builders.hpp"
 #include "support/random.hpp"
 #include "support/scramble.hpp"
@@ -162,6 +163,45 @@ TEST(FoundBlocks, DoNotDependOnNumbersOrientationsAndCuts) {
       EXPECT_EQ(sizes(found.mesh), expected) << "seed " << seed;
     }
   }
+}
+
+/// Each quadrilateral is one cell, whose two planes have its nodes; faces of patches are those of its edges.
+TEST(FoundBlocks, InThePlaneHaveASecondPlane) {
+  for (Mesh const& flat : {flat_box(5, 4, 4), periodic_flat_box(5, 4, 4), airfoil(24, 100, 0.01, 1.3, 4)}) {
+    SCOPED_TRACE(flat.source);
+    FoundBlocks const found = blocks_of(flat);
+    ASSERT_EQ(found.n_left, 0) << found.why_left;
+    Mesh const& blocks = found.mesh;
+    EXPECT_EQ(blocks.dimension, 2);
+    EXPECT_EQ(blocks.n_cells(), flat.n_elements());
+    EXPECT_EQ(blocks.zones.size(), 1U);
+    std::size_t cell = 0;
+    for (Zone const& zone : blocks.zones) {
+      ASSERT_EQ(zone.extent[2], 2);
+      for (int j = 0; j + 1 < zone.extent[1]; ++j)
+        for (int i = 0; i + 1 < zone.extent[0]; ++i, ++cell)
+          for (int k = 0; k < 2; ++k) {
+            std::multiset<Index32> own, of_element;
+            for (int c = 0; c < 4; ++c) own.insert(found.node[std::size_t(zone.node({i + c % 2, j + c / 2, k}))]);
+            for (Index32 const n : flat.elements.corners(found.element[cell])) of_element.insert(n);
+            ASSERT_EQ(own, of_element) << "cell " << cell;
+          }
+    }
+    EXPECT_EQ(flaws(blocks, 1e-6), std::vector<std::string>());
+    auto patches = cells_of_patches(blocks);
+    EXPECT_EQ(patches["2-D plane"], 2 * flat.n_elements());
+    patches.erase("2-D plane");
+    auto expected = cells_of_patches(flat);
+    if (!flat.connections.empty()) {  // rules find these by the names that their interface has
+      expected.erase("i_min");
+      expected.erase("i_max");
+    }
+    EXPECT_EQ(patches, expected);
+    Mesh checked = blocks;
+    EXPECT_NO_THROW((void)connect_and_check(checked, {}));
+  }
+  FoundBlocks const mixed = blocks_of(flat_box(4, 4, 2));
+  EXPECT_NE(mixed.why_left.find("is no quadrilateral"), std::string::npos) << mixed.why_left;
 }
 
 TEST(FoundBlocks, SayWhatIsNone) {

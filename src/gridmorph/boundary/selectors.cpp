@@ -57,7 +57,9 @@ std::vector<std::string> sorted_names(std::set<std::string> const& names) { retu
 std::vector<AnyConnection> connections_of(BoundaryMesh const& mesh) {
   std::vector<AnyConnection> out;
   auto const add = [&](auto const& c) {
-    out.push_back({int(out.size()), c.name, c.families, c.zone, c.donor_zone, c.periodic});
+    AnyConnection one{int(out.size()), c.name, c.families, c.zone, c.donor_zone, c.periodic};
+    if constexpr (requires { c.zone_in_file; }) one.zone_in_file = c.zone_in_file;
+    out.push_back(std::move(one));
   };
   std::for_each(mesh.interfaces.begin(), mesh.interfaces.end(), add);
   std::for_each(mesh.connections.begin(), mesh.connections.end(), add);
@@ -98,17 +100,17 @@ Selection select(BoundaryMesh const& mesh, std::string const& selector) {
   if (!by_family.empty()) return by_family;
 
   bool const qualified = selector.find('/') != std::string::npos;
-  auto const named = [&](std::string const& name, int zone) {
-    return glob_match(selector, name) || (qualified && glob_match(selector, mesh.zones[zone].name + "/" + name));
+  auto const named = [&](auto const& one) {
+    std::string zone(one.zone_in_file.empty() ? mesh.zones[std::size_t(one.zone)].name : one.zone_in_file);
+    return glob_match(selector, one.name) || (qualified && glob_match(selector, zone + "/" + one.name));
   };
-  Selection const by_bc =
-      select_if(mesh, [&](Patch const& p) { return p.kind != PatchKind::connection && named(p.name, p.zone); });
+  Selection const by_bc = select_if(mesh, [&](Patch const& p) { return p.kind != PatchKind::connection && named(p); });
   if (!by_bc.empty()) return by_bc;
 
   Selection by_connection =
-      select_if(mesh, [&](Patch const& p) { return p.kind == PatchKind::connection && named(p.name, p.zone); });
+      select_if(mesh, [&](Patch const& p) { return p.kind == PatchKind::connection && named(p); });
   for (auto const& c : connections_of(mesh))
-    if (named(c.name, c.zone)) by_connection.interfaces.push_back(c.number);
+    if (named(c)) by_connection.interfaces.push_back(c.number);
   return by_connection;
 }
 

@@ -20,6 +20,7 @@ struct AnyConnection {
   std::vector<std::string> const& families;
   int zone = -1, donor_zone = -1;
   std::optional<Periodic> const& periodic;
+  std::string_view zone_in_file{};  ///< as Interface1to1 has it
 };
 /// All connections of a mesh, which must outlive them.
 std::vector<AnyConnection> connections_of(BoundaryMesh const& mesh);

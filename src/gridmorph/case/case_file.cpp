@@ -43,7 +43,7 @@ void read_mesh_table(TableReader& root, CaseFile& out) {
     mesh->problem("output", "is the input; give another file name, the baseline is never overwritten");
   if (auto const side = mesh->string("side_file")) out.side_file = (directory / *side).lexically_normal();
   out.leave_out = mesh->strings("leave_out").value_or(std::vector<std::string>{});
-  out.find_blocks = mesh->choice("blocks", {"off", "find"}).value_or(0) == 1;
+  if (auto const blocks = mesh->choice("blocks", {"off", "find"})) out.find_blocks = *blocks == 1;
   out.axis = casefile::read_axis(*mesh, "axis");
   if (out.axis) out.motion.axis = *out.axis;
   if (auto const tolerance = mesh->number("matching_tolerance")) {

@@ -150,7 +150,7 @@ struct CaseFile {
   std::optional<std::filesystem::path> side_file;  ///< patches and interfaces of the mesh (side_file.hpp)
   std::vector<std::string> leave_out;              ///< bases and zones of the file that are no part of the mesh
   std::optional<Axis> axis;                        ///< [mesh] axis as given; Motion::axis holds it too
-  bool find_blocks = false;                        ///< hexahedra are morphed as the blocks found among them
+  std::optional<bool> find_blocks;                 ///< [mesh] blocks as given: why_elements() says what holds
   Motion motion;
   std::vector<InnerRegion> measured_regions;  ///< [[region]] that rules do not move
   PlanOptions plan;

@@ -1,4 +1,5 @@
 #include <gridmorph/boundary/range_nodes.hpp>
+#include <gridmorph/boundary/second_plane.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/case/field_check.hpp>
 #include <gridmorph/core/error.hpp>
@@ -11,7 +12,7 @@ namespace gridmorph {
 namespace {
 
 /// Of the patches that a rule names; what names none is told by those who resolve rules.
-std::vector<Vec3> nodes_of(Mesh const& mesh, MotionRule const& rule) {
+std::vector<Vec3> nodes_of(Mesh const& mesh, SecondPlane const& second_plane, MotionRule const& rule) {
   std::vector<Vec3> out;
   for (std::string const& selector : rule.patches) {
     Selection named;
@@ -23,7 +24,7 @@ std::vector<Vec3> nodes_of(Mesh const& mesh, MotionRule const& rule) {
     for (int const p : named.patches) {
       Patch const& patch = mesh.patches[std::size_t(p)];
       Zone const& zone = mesh.zones[std::size_t(patch.zone)];
-      auto const add = [&](Index n) { out.push_back(mesh.coordinates[n]); };
+      auto const add = [&](Index n) { out.push_back(second_plane.first(mesh.coordinates[n])); };
       if (zone.is_block() && patch.faces.size() == 0 && patch.nodes.empty())
         for_each_node(zone, patch.range, add);
       else
@@ -36,13 +37,14 @@ std::vector<Vec3> nodes_of(Mesh const& mesh, MotionRule const& rule) {
 }  // namespace
 
 void check_fields(CaseFile const& case_file, Mesh const& mesh) {
+  SecondPlane const second_plane(mesh);
   for (FieldUse const& use : case_file.fields)
     for (MotionRule const& rule : case_file.motion.rules) {
       if (rule.where != use.where) continue;
       // Where a displacement is taken back the nodes are that far from the points.
       double const slack = use.inverse ? use.field->largest_displacement() : 0;
       try {
-        use.field->expect(nodes_of(mesh, rule), slack);
+        use.field->expect(nodes_of(mesh, second_plane, rule), slack);
       } catch (MotionError const& e) {
         throw MotionError(use.where + ": " + e.what());
       }

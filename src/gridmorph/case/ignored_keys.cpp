@@ -56,7 +56,10 @@ class Ignored {
   }
 
   void of_structured() {
-    std::string const why = "is for unstructured meshes, and '" + case_.input.string() + "' is structured";
+    std::string const why =
+        "is for unstructured meshes, and '" + case_.input.string() +
+        (use_.found_blocks ? "' is morphed as the blocks found in it (blocks = \"off\" in [mesh] prevents that)"
+                           : "' is structured");
     if (!use_.found_blocks) refuse("mesh", "blocks", why + ": it is blocks already");
     refuse("", "near_field", why + ": [boundary_layer] says there how far the near field reaches");
     refuse("", "background", why + ": law in [volume] says there how displacements fall off");
@@ -69,7 +72,8 @@ class Ignored {
   }
 
   void of_wheel() {
-    if (case_.find_blocks) refuse("mesh", "blocks", "is for `gridmorph morph`, and wheels take a mesh as it is");
+    if (case_.find_blocks.value_or(false))
+      refuse("mesh", "blocks", "is for `gridmorph morph`, and wheels take a mesh as it is");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
     std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
     if (use_.unstructured && !case_.background) refuse("guard", "steps", why);
@@ -114,6 +118,25 @@ class Ignored {
 };
 
 }  // namespace
+
+std::string why_elements(CaseFile const& case_file) {
+  if (case_file.find_blocks) return *case_file.find_blocks ? "" : "[mesh] blocks is \"off\"";
+  auto const of_elements = [](GivenKey const& k) {
+    return (k.table.empty() && (k.key == "near_field" || k.key == "background")) ||
+           (k.table == "guard" && k.key == "steps");
+  };
+  auto const key = std::find_if(case_file.given.begin(), case_file.given.end(), of_elements);
+  if (key != case_file.given.end())
+    return fmt::format("{}:{}: [{}] {}is for elements", case_file.source.string(), key->line,
+                       key->table.empty() ? key->key : key->table, key->table.empty() ? "" : key->key + " ");
+  if (!case_file.shock_follows.empty()) return "the flow of a shock is solved on the elements";
+  for (auto const* regions : {&case_file.motion.regions, &case_file.measured_regions})
+    for (InnerRegion const& region : *regions) {
+      if (!region.zones.empty()) return fmt::format("{}: zones of a region are those of elements", region.where);
+      if (region.shock || region.cells) return "the flow of a shock is solved on the elements";
+    }
+  return "";
+}
 
 void refuse_ignored_keys(CaseFile const& case_file, CaseUse const& use) { Ignored(case_file, use).run(); }
 

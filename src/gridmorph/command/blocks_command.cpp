@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace gridmorph::cli {
 
@@ -23,7 +24,9 @@ int run_blocks_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("reading " + options.input.string());
   Mesh elements = load_mesh(options.input, {}, options.leave_out);
   terminal.progress("looking for blocks");
-  Mesh const blocks = ElementsAsBlocks(std::move(elements)).take_blocks();
+  ElementsAsBlocks found{IndexedMesh(std::move(elements))};
+  if (!found.why_none().empty()) throw MeshError(found.why_none() + ", so that it is no mesh of blocks");
+  Mesh const blocks = found.take_blocks();
   terminal.progress("writing " + output);
   write_mesh(output, blocks);
   auto const periodic = std::count_if(blocks.interfaces.begin(), blocks.interfaces.end(),

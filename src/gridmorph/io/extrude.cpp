@@ -8,7 +8,6 @@ namespace gridmorph::cgns {
 
 namespace {
 
-constexpr char const* plane_patch = "2-D plane";
 /// Spread along an axis, relative to the mesh size, below which the mesh counts as constant there.
 constexpr double constant_tolerance = 1e-6;
 /// Length of the sum of cell normals over the sum of their lengths, below which a surface has no missing direction.
@@ -64,7 +63,7 @@ void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems) {
       IndexRange range{{0, 0, 0}, mesh.zones[z].extent};
       range.begin[axis] = side;
       range.end[axis] = side + 1;
-      mesh.patches.push_back({plane_patch, "BCSymmetryPlane", PatchKind::symmetry, {}, int(z), range});
+      mesh.patches.push_back({std::string(plane_patch_name), "BCSymmetryPlane", PatchKind::symmetry, {}, int(z), range});
     }
   }
   if (mesh.coordinates.size() == 0) return;

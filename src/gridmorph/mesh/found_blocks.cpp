@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace gridmorph {
@@ -130,11 +132,72 @@ struct Placed {
   Orientation axes;  ///< of the cell's local axes -> of the block's
 };
 
-/// The blocks of a mesh, cell by cell.
+/// A mesh of quadrilaterals with a layer of hexahedra on it, as readers do with blocks in the plane: node n has node
+/// n + n_nodes above it. Zones are joined, since nobody sees them.
+Mesh with_layer(Mesh const& flat) {
+  auto const n_nodes = Index32(flat.n_nodes());
+  Mesh out;
+  Zone& zone = out.zones.emplace_back();
+  zone.name = flat.zones.front().name;
+  zone.n_nodes = 2 * flat.n_nodes();
+  zone.n_elements = flat.n_elements();
+  double area = 0;
+  std::vector<Index32> nodes;
+  auto const add_above = [&] {
+    std::size_t const n = nodes.size();
+    for (std::size_t k = 0; k < n; ++k) nodes.push_back(nodes[k] + n_nodes);
+  };
+  std::array<Patch, 2> planes;
+  for (Patch& plane : planes) {
+    plane.name = plane_patch_name;
+    plane.bc_type = "BCSymmetryPlane";
+    plane.kind = PatchKind::symmetry;
+    plane.zone = 0;
+  }
+  auto const& x = flat.coordinates;
+  for (Index e = 0; e < flat.n_elements(); ++e) {
+    auto const corners = flat.elements.corners(e);
+    nodes.assign(corners.begin(), corners.end());
+    area += 0.5 * norm(cross(x[nodes[2]] - x[nodes[0]], x[nodes[3]] - x[nodes[1]]));
+    planes[0].faces.add(nodes);
+    add_above();
+    planes[1].faces.add(std::span(nodes).last(4));
+    out.elements.type.push_back(ElementType::hexahedron);
+    out.elements.nodes.add(nodes);
+  }
+  for (Patch const& patch : flat.patches) {
+    Patch& own = out.patches.emplace_back(patch);
+    own.zone_in_file = flat.zones[std::size_t(patch.zone)].name;
+    own.zone = 0;
+    own.faces = {};
+    for (Index f = 0; f < patch.faces.size(); ++f) {
+      auto const edge = patch.faces[f];
+      own.faces.add(std::array{edge[0], edge[1], edge[1] + n_nodes, edge[0] + n_nodes});
+    }
+    for (Index32 const n : patch.nodes) own.nodes.push_back(n + n_nodes);
+  }
+  out.patches.insert(out.patches.end(), planes.begin(), planes.end());
+  for (Connection const& connection : flat.connections) {
+    Connection& own = out.connections.emplace_back(connection);
+    own.zone = own.donor_zone = 0;
+    for (Index32 const n : connection.nodes) own.nodes.push_back(n + n_nodes);
+    for (Index32 const n : connection.donor_nodes) own.donor_nodes.push_back(n + n_nodes);
+  }
+  Vec3 const up = std::sqrt(area / double(std::max<Index>(1, flat.n_elements()))) * plane_normal(flat);
+  out.coordinates = Coordinates(2 * flat.n_nodes());
+  for (Index n = 0; n < flat.n_nodes(); ++n) {
+    out.coordinates.set(n, x[n]);
+    out.coordinates.set(n + n_nodes, x[n] + up);
+  }
+  return out;
+}
+
+/// The blocks of a mesh of hexahedra, cell by cell. `named`: the mesh that they are told of in.
 class Search {
  public:
-  Search(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology)
+  Search(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology, Mesh const& named)
       : mesh_(mesh),
+        named_(named),
         links_(host, mesh, topology),
         sheets_(host, links_, mesh.n_elements()),
         placed_(std::size_t(mesh.n_elements())),
@@ -249,7 +312,7 @@ class Search {
     for (Index32 const e : cells) block_[std::size_t(e)] = left;
     if (out.n_left == 0) {
       Index32 const first = *std::min_element(cells.begin(), cells.end());
-      out.why_left = describe_element(mesh_, first) + " " + why;
+      out.why_left = describe_element(named_, first) + " " + why;
     }
     out.n_left += Index(cells.size());
   }
@@ -264,18 +327,18 @@ class Search {
 
   void finish(FoundBlocks& out) const {
     Mesh& mesh = out.mesh;
-    mesh.dimension = mesh_.dimension;
-    mesh.source = mesh_.source;
-    mesh.families = mesh_.families;
-    mesh.notes = mesh_.notes;
+    mesh.dimension = named_.dimension;
+    mesh.source = named_.source;
+    mesh.families = named_.families;
+    mesh.notes = named_.notes;
     mesh.coordinates = Coordinates(mesh.n_nodes());
     for (std::size_t n = 0; n < out.node.size(); ++n) mesh.coordinates.set(Index(n), mesh_.coordinates[out.node[n]]);
     bool const single =
-        std::all_of(mesh_.zones.begin(), mesh_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
+        std::all_of(named_.zones.begin(), named_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
     for (Zone& zone : mesh.zones) zone.single_precision = single;
   }
 
-  Mesh const& mesh_;
+  Mesh const &mesh_, &named_;
   HexLinks links_;
   Sheets sheets_;
   std::vector<Placed> placed_;
@@ -286,13 +349,20 @@ class Search {
 
 FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                         BoundaryFacePatches const& face_patches) {
-  if (mesh.dimension != 3) {
-    FoundBlocks out;
-    out.n_left = mesh.n_elements();
-    out.why_left = mesh.source + ": is a mesh in the plane";
-    return out;
-  }
-  return Search(host, mesh, topology).run(face_patches);
+  if (mesh.dimension == 3) return Search(host, mesh, topology, mesh).run(face_patches);
+  for (Index e = 0; e < mesh.n_elements(); ++e)
+    if (mesh.elements.type[std::size_t(e)] != ElementType::quadrilateral) {
+      FoundBlocks out;
+      out.n_left = mesh.n_elements();
+      out.why_left = describe_element(mesh, e) + " is no quadrilateral";
+      return out;
+    }
+  Mesh const layer = with_layer(mesh);
+  UnstructuredTopology const of_layer = make_topology(host, layer);
+  FoundBlocks out = Search(host, layer, of_layer, mesh).run(find_face_patches(layer, of_layer));
+  for (Index32& n : out.node)
+    if (n >= mesh.n_nodes()) n -= Index32(mesh.n_nodes());
+  return out;
 }
 
 }  // namespace gridmorph

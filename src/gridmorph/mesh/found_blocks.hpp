@@ -1,4 +1,4 @@
-// Blocks of grid lines in a mesh of hexahedra, whose file does not say that it has any.
+// Blocks of grid lines in a mesh of hexahedra, or quadrilaterals in the plane, whose file does not say that it has any.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -12,13 +12,15 @@ namespace gridmorph {
 /// Blocks with what leads back to the elements that they were found in.
 struct FoundBlocks {
   Mesh mesh;  ///< blocks "block 1", "block 2", ... with patches as ranges and 1-to-1 interfaces, periodic ones too
-  std::vector<Index32> node;     ///< (mesh.n_nodes()) the node of the elements at each node of the blocks
+  /// (mesh.n_nodes()) the node of the elements at each node of the blocks; in the plane also of the second plane, which
+  /// the blocks have as readers give it to them.
+  std::vector<Index32> node;
   std::vector<Index32> element;  ///< (mesh.n_cells()) the element that each cell is, block after block, i fastest
   Index n_left = 0;              ///< elements that lie in no block; these are then not in `mesh`
   std::string why_left;  ///< of the first of them: what it is, or what about it is no block; empty where none is
 };
 
-/// Finds the blocks of a mesh of hexahedra in space.
+/// Finds the blocks of a mesh of hexahedra, or of quadrilaterals in the plane.
 ///
 /// An edge inside that four cells share, or one on the boundary that one cell has or two, is regular; grid lines go
 /// through it. From all others sheets of faces begin, each face going on in the one opposite at the next regular edge,
@@ -28,7 +30,7 @@ struct FoundBlocks {
 /// cut along a sheet of its own. Nodes that connections declare to be one are one. Nothing is guessed from places:
 /// other numbers, orders and orientations of the elements give the same blocks.
 ///
-/// Elements of other types, and of meshes in the plane, lie in no block. The cost is linear but for sets of joined
+/// Elements of other types lie in no block. The cost is linear but for sets of joined
 /// faces; memory: about 130 bytes per element.
 FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                         BoundaryFacePatches const& face_patches);

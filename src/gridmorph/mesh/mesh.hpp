@@ -50,6 +50,7 @@ struct Patch {
       range{};       ///< blocks: nodes; extent 1 along exactly one axis (the face normal), of regions along one or none
   CsrGraph faces{};  ///< elements: corner nodes of each face (each edge in 2-D), in any order around it
   std::vector<Index32> nodes{};  ///< instead of faces, where the file lists nodes; ascending, each once
+  std::string zone_in_file{};    ///< where `zone` is a block found among elements, the name that selectors know
 };
 
 /// Periodicity as declared in the file (CGNS SIDS Periodic_t). `declared` maps this side's nodes onto the donor's
@@ -75,6 +76,7 @@ struct Interface1to1 {
   IndexRange range;   ///< own nodes, ascending
   IndexMap to_donor;  ///< own node index -> donor node index; also continues through the face into the donor
   std::optional<Periodic> periodic;
+  std::string zone_in_file{};  ///< as that of a patch
 };
 
 /// Two lists of nodes that coincide one by one, the donor's after `periodic` where there is one: GridConnectivity_t of
@@ -142,6 +144,9 @@ struct Coordinates {
     z(n) = p.z;
   }
 };
+
+/// The name of the patches on the two node planes that blocks of 2-D meshes are given.
+inline constexpr std::string_view plane_patch_name = "2-D plane";
 
 /// A mesh without its cells: zones and their nodes, patches and connections, as rules and messages see them.
 struct BoundaryMesh {

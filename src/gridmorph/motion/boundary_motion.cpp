@@ -1,5 +1,6 @@
 #include <gridmorph/motion/boundary_motion.hpp>
 
+#include <gridmorph/boundary/second_plane.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -35,6 +36,7 @@ struct BoundaryMotion::Impl {
   std::shared_ptr<Boundary const> boundary;
   ResolvedMotion motion;
   std::vector<MotionRule> const& rules = motion.rules;
+  SecondPlane second_plane;
   std::vector<std::string> notes;
   std::shared_ptr<SlipSurfaces const> slip;
   std::map<std::vector<int>, RowMotion> rows;  ///< by the patches of the blade; map, so that rows stay where they
@@ -56,6 +58,7 @@ struct BoundaryMotion::Impl {
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
       : boundary(std::move(of)),
         motion(std::move(resolved)),
+        second_plane(boundary->mesh()),
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
     inflate();
@@ -67,7 +70,8 @@ struct BoundaryMotion::Impl {
     attach(notes);
   }
 
-  Impl(Impl const& other, Motion const& now) : boundary(other.boundary), motion(other.motion), slip(other.slip) {
+  Impl(Impl const& other, Motion const& now)
+      : boundary(other.boundary), motion(other.motion), second_plane(other.second_plane), slip(other.slip) {
     for (std::size_t r = 0; r < now.rules.size(); ++r) motion.rules[r].rule = now.rules[r].rule;
     for (auto const& [r, target] : other.targets)
       targets[r] =
@@ -355,7 +359,13 @@ struct BoundaryMotion::Impl {
       std::transform(points.begin(), points.end(), out.begin(),
                      [rigid](Vec3 const& p) { return gridmorph::displacement(*rigid, p); });
     } else if (auto const* function = std::get_if<FunctionRule>(&rule)) {
-      function->function(points, out);
+      if (second_plane.is_there()) {
+        std::vector<Vec3> in_first(points.begin(), points.end());
+        for (Vec3& p : in_first) p = second_plane.first(p);
+        function->function(in_first, out);
+      } else {
+        function->function(points, out);
+      }
     } else if (SectionMotion const* sections = sections_of_rule[r].get()) {
       std::transform(points.begin(), points.end(), out.begin(),
                      [sections](Vec3 const& p) { return sections->displacement(p); });

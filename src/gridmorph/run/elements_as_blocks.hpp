@@ -2,17 +2,28 @@
 #pragma once
 
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/quality/indexed_mesh.hpp>
 
+#include <string>
 #include <vector>
 
 namespace gridmorph::cli {
 
+/// Whether blocks can be found at all: hexahedra, or quadrilaterals in the plane, of first order and nothing else.
+/// Cost: a look at the types.
+bool may_have_blocks(Mesh const& elements);
+
 /// The elements as the file has them, and the way from their blocks back to them.
 class ElementsAsBlocks {
  public:
-  /// Throws MeshError where an element lies in no block, and says which.
-  explicit ElementsAsBlocks(Mesh elements);
+  /// The mesh is copied, so that what belongs to it as one of elements can go. Cost: find_blocks().
+  explicit ElementsAsBlocks(IndexedMesh const& elements);
+
+  /// Why the elements are no blocks: which lies in none; empty where all lie in one.
+  [[nodiscard]] std::string const& why_none() const { return why_none_; }
+  /// Whether grid lines reach far enough for blocks to lead a morph: in a mesh that was paved, limits of blocks run
+  /// through nearly every row of cells, and elements of such a mesh are better off as elements.
+  [[nodiscard]] bool have_long_lines() const { return long_lines_; }
 
   /// The blocks, once; a note of theirs says how many there are.
   [[nodiscard]] Mesh take_blocks() { return std::move(blocks_); }
@@ -24,6 +35,9 @@ class ElementsAsBlocks {
 
  private:
   Mesh elements_, blocks_;
+  std::string why_none_;
+  bool long_lines_ = false;
+  int across_ = -1;                      ///< the component of coordinates that meshes in the plane keep
   std::vector<Index32> representative_;  ///< coincident_nodes() of the elements
   std::vector<Index32> block_node_;      ///< (elements' nodes) a node of the blocks that lies there; -1: none
   std::vector<Index32> element_;         ///< (cells of the blocks)

@@ -223,12 +223,22 @@ KindTraits const& traits_of(MeshKind kind) {
 
 LoadedMesh::LoadedMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
                        std::vector<std::string> const& leave_out, bool find_blocks)
-    : LoadedMesh(find_blocks
-                     ? LoadedMesh(std::make_shared<ElementsAsBlocks>(in_order(load_mesh(path, side_file, leave_out))))
-                     : LoadedMesh(load_mesh(path, side_file, leave_out))) {}
+    : LoadedMesh(load_mesh(path, side_file, leave_out)) {
+  if (find_blocks) take_blocks();
+}
 
-LoadedMesh::LoadedMesh(std::shared_ptr<ElementsAsBlocks> as_elements) : LoadedMesh(as_elements->take_blocks()) {
-  as_elements_ = std::move(as_elements);
+void LoadedMesh::take_blocks() {
+  if (!may_have_blocks(mesh()) || !problems_.empty()) return;
+  auto found = std::make_shared<ElementsAsBlocks>(indexed_);
+  if (found->why_none().empty() && found->have_long_lines()) {
+    *this = LoadedMesh(found->take_blocks());
+    as_elements_ = std::move(found);
+    return;
+  }
+  remarks_on_blocks_.push_back((found->why_none().empty()
+                                    ? mesh().source + ": limits of blocks run through nearly every row of hexahedra"
+                                    : found->why_none()) +
+                               "; they are morphed as elements");
 }
 
 LoadedMesh::LoadedMesh(Mesh as_read)
@@ -253,6 +263,7 @@ std::vector<std::string> LoadedMesh::notes() const {
   if (is_structured()) return out;
   auto const& faces = indexed_.face_patches().notes;
   out.insert(out.end(), faces.begin(), faces.end());
+  out.insert(out.end(), remarks_on_blocks_.begin(), remarks_on_blocks_.end());
   auto const contradicted = contradicted_periodics(mesh(), mesh().size());
   out.insert(out.end(), contradicted.begin(), contradicted.end());
   return out;

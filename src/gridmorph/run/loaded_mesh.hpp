@@ -74,8 +74,8 @@ KindTraits const& traits_of(MeshKind kind);
 /// A mesh, elements in order by position where their file scatters them, with what follows from it.
 class LoadedMesh {
  public:
-  /// As load_mesh() of side_file.hpp. find_blocks: hexahedra are taken as the blocks found among them. Throws MeshError
-  /// where some lie in no block.
+  /// As load_mesh() of side_file.hpp. find_blocks: hexahedra are taken as the blocks found among them where all lie in
+  /// one; where they do not, and are all hexahedra, a note says why.
   LoadedMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
              std::vector<std::string> const& leave_out, bool find_blocks = false);
   /// Of a mesh as it was read.
@@ -140,7 +140,8 @@ class LoadedMesh {
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const;
 
  private:
-  explicit LoadedMesh(std::shared_ptr<ElementsAsBlocks> as_elements);
+  /// Where the elements are blocks, they are taken as such.
+  void take_blocks();
   /// The mesh as its file has it.
   [[nodiscard]] Mesh const& in_file() const { return as_elements_ ? as_elements_->elements() : mesh(); }
   [[nodiscard]] OutputFields in_file(OutputFields const& fields) const {
@@ -150,6 +151,7 @@ class LoadedMesh {
   std::shared_ptr<ElementsAsBlocks const> as_elements_;  ///< where the mesh is blocks found among elements
   IndexedMesh indexed_;
   std::vector<std::string> problems_;
+  std::vector<std::string> remarks_on_blocks_;  ///< why none are taken
   /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of
   /// OpenFOAM.
   bool by_faces_;
@@ -166,6 +168,7 @@ nlohmann::json inspect_elements_json(LoadedMesh const& loaded, MeshSummary const
 struct MeshSource : MeshFileFacts {
   std::filesystem::path path;
   std::vector<std::string> leave_out;
+  bool find_blocks = false;  ///< elements may turn out to be blocks when the mesh is read
 
   [[nodiscard]] KindTraits const& traits() const { return traits_of(kind); }
 };

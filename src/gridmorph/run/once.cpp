@@ -19,12 +19,12 @@ namespace {
 
 /// Files that [output] stages writes, as far as they are known before there is a plan: which stages blocks have is not,
 /// so of these what is there already, and what has the name of a stage among the other outputs.
-RunFiles stage_files(std::filesystem::path const& folder, MeshKind kind, RunFiles const& others) {
+RunFiles stage_files(std::filesystem::path const& folder, MeshSource const& file, RunFiles const& others) {
   RunFiles out;
   auto const add = [&](std::filesystem::path const& path) { out.push_back({"stage", path, true}); };
-  if (kind == MeshKind::unstructured) {
+  if (file.kind == MeshKind::unstructured) {
     for (char const* name : stage_names) add(folder / name);
-    return out;
+    if (!file.find_blocks) return out;
   }
   add(folder / stage_list_name);
   std::error_code error;
@@ -45,7 +45,7 @@ void check_outputs(CaseFile const& case_file, MeshSource const& file) {
   auto const& options = case_file.output_options;
   RunFiles outputs = outputs_of(case_file.output, options.report);
   if (options.stages) {
-    auto const stages = stage_files(*options.stages, file.kind, outputs);
+    auto const stages = stage_files(*options.stages, file, outputs);
     outputs.insert(outputs.end(), stages.begin(), stages.end());
   }
   if (options.page) outputs.push_back({"page", *options.page});
@@ -187,10 +187,9 @@ class Once {
     std::string const vtk = options_.vtk ? fmt::format("wrote {}\n", options_.vtk->string()) : std::string();
     std::string stages;
     if (options_.stages)
-      stages =
-          fmt::format("wrote {} to {}\n",
-                      file_.kind == MeshKind::structured ? "the mesh after every stage" : "wrap and background mesh",
-                      options_.stages->string());
+      stages = fmt::format("wrote {} to {}\n",
+                           run_.mesh().is_structured() ? "the mesh after every stage" : "wrap and background mesh",
+                           options_.stages->string());
     return conclude(
         {.output = case_file_.output,
          .report = options_.report,

@@ -19,15 +19,17 @@ void print_plan(CaseFile const& case_file, Console& console, PlanPrinting const&
   auto const& graph = options.graph;
   MeshSource const file =
       checked_mesh_file(case_file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph);
-  if (graph) {
-    if (file.kind == MeshKind::unstructured)
+  auto const refuse_what_blocks_have = [&] {
+    if (graph)
       throw ConfigError(case_file.input.string() + " is unstructured: there are no blocks to draw; leave out --graph");
-    check_run_files(inputs_of(case_file, file), {{"drawing", *graph}});
-  }
-  if (file.kind == MeshKind::unstructured && case_file.plan.volume.order == OrderBy::prediction)
-    throw ConfigError(case_file.input.string() +
-                      " is unstructured: there are no chains to put in order; leave out --optimise");
+    if (case_file.plan.volume.order == OrderBy::prediction)
+      throw ConfigError(case_file.input.string() +
+                        " is unstructured: there are no chains to put in order; leave out --optimise");
+  };
+  if (file.kind == MeshKind::unstructured && !file.find_blocks) refuse_what_blocks_have();
+  if (graph) check_run_files(inputs_of(case_file, file), {{"drawing", *graph}});
   Run run(case_file, file, console);
+  if (!run.mesh().is_structured()) refuse_what_blocks_have();
   PlanPrediction const prediction = run.predict();
   for (auto const& warning : prediction.warnings) console.warn(warning);
   for (auto const& s : run.shortfalls_of_motion()) console.warn(s.message);

@@ -49,9 +49,9 @@ void refuse_missing_files(CaseFile const& case_file) {
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run) {
   refuse_missing_files(case_file);
   MeshSource file = look_at(case_file.input, case_file.leave_out);
-  bool const finds = case_file.find_blocks && file.kind == MeshKind::unstructured && run != CaseUse::Run::wheel;
-  if (finds) file.kind = MeshKind::structured;  // what is morphed is blocks
-  refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format, finds});
+  file.find_blocks =
+      file.kind == MeshKind::unstructured && run != CaseUse::Run::wheel && why_elements(case_file).empty();
+  if (!file.find_blocks) refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format});
   return file;
 }
 
@@ -80,12 +80,22 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Console& console)
     : case_file_(case_file), console_(console) {
   Stopwatch watch;
   console.progress("reading " + case_file.input.string());
-  mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out, case_file.find_blocks);
+  mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out, file.find_blocks);
+  if (file.find_blocks)
+    refuse_ignored_keys(case_file, {.unstructured = !mesh_->is_structured(),
+                                    .run = case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph,
+                                    .format = file.format,
+                                    .found_blocks = mesh_->is_structured()});
   times.push_back({"read", watch.lap(), true});
   console.progress(mesh_->kind().planning);
   check_fields(case_file, mesh_->mesh());
   plan_ = std::make_unique<CasePlan>(*mesh_, case_file);
   notes = plan_->notes();
+  if (file.kind == MeshKind::unstructured && !file.find_blocks && !case_file.find_blocks &&
+      may_have_blocks(mesh_->mesh()))
+    notes.push_back(fmt::format(
+        "no blocks were looked for among the hexahedra, since {}; blocks = \"find\" in [mesh] looks for them",
+        why_elements(case_file)));
   for (auto& time : plan_->times()) times.push_back(std::move(time));
   wanted_.limits = case_file.guard;
   wanted_.fast = wants_verdict(case_file, mesh_->n_cells());

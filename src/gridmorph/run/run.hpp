@@ -17,7 +17,8 @@
 
 namespace gridmorph::cli {
 
-/// The mesh file of a case file, once no key of that is without effect on such a mesh and run. Throws ConfigError.
+/// The mesh file of a case file, once no key of that is without effect on such a mesh and run; where elements may turn
+/// out to be blocks, Run looks at the keys. Throws ConfigError.
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run);
 
 /// [guard] as thresholds of the quality report.

@@ -144,6 +144,7 @@ class Sides {
       patch.bc_type = of.bc_type;
       patch.kind = of.kind;
       patch.families = of.families;
+      patch.zone_in_file = zone_in_file(of);
       patch.zone = side.block;
       patch.range = range;
       blocks_.patches.push_back(std::move(patch));
@@ -160,14 +161,30 @@ class Sides {
       Connection const& c = mesh_.connections[std::size_t(what.connection)];
       out.name = c.name;
       out.families = c.families;
+      out.zone_in_file = mesh_.zones[std::size_t(c.zone)].name;
       out.periodic = c.periodic;
-      for (int const p : what.on_patches)  // rules that name them go on doing so
+      // Rules that name what lists the same faces go on doing so.
+      for (int const p : what.on_patches)
         if (p >= 0) add_names(mesh_.patches[std::size_t(p)], out.families);
+      for (Connection const& other : mesh_.connections)
+        if (&other != &c && other.periodic && same_nodes(other.nodes, c.donor_nodes)) add_names(other, out.families);
     }
     blocks_.interfaces.push_back(std::move(out));
   }
 
-  static void add_names(Patch const& patch, std::vector<std::string>& to) {
+  [[nodiscard]] std::string const& zone_in_file(Patch const& of) const {
+    return of.zone_in_file.empty() ? mesh_.zones[std::size_t(of.zone)].name : of.zone_in_file;
+  }
+
+  static bool same_nodes(std::vector<Index32> a, std::vector<Index32> b) {
+    if (a.size() != b.size()) return false;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    return a == b;
+  }
+
+  template <class Named>
+  static void add_names(Named const& patch, std::vector<std::string>& to) {
     auto const add = [&](std::string const& name) {
       if (std::find(to.begin(), to.end(), name) == to.end()) to.push_back(name);
     };
