@@ -28,7 +28,7 @@ Mesh load_mesh(std::filesystem::path const& mesh, std::optional<std::filesystem:
 void add_side_file(std::string const& text, std::filesystem::path const& path, Mesh& mesh);
 
 /// A side file for a mesh: the interfaces that were found, and a patch for every rectangle of a zone face that is left.
-/// Rectangles that continue one another have one name (open_patches.hpp), for the user to change. `existing`: text of
+/// Rectangles that continue one another have one name, for the user to change. `existing`: text of
 /// the mesh's present side file, which comes first as it is.
 std::string side_file_text(Mesh const& mesh, FoundInterfaces const& found, std::string const& existing = {});
 

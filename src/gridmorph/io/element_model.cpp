@@ -1,18 +1,149 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/cgns/cgns_file.hpp>
 #include <gridmorph/io/cgns/cgns_sections.hpp>
-#include <gridmorph/io/element_faces.hpp>
 #include <gridmorph/io/element_model.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace gridmorph {
 
 namespace {
+
+/// A triangle or quadrilateral with, in elements of higher order, a node amid each side and one in the middle.
+struct ElementFace {
+  std::array<std::int32_t, 4> corner{-1, -1, -1, -1};  ///< the last one is -1 in a triangle
+  std::array<std::int32_t, 4> amid{-1, -1, -1, -1};    ///< between corner s and the next one
+  std::int32_t middle = -1;
+
+  [[nodiscard]] int sides() const { return corner[3] < 0 ? 3 : 4; }
+};
+
+/// A finite element, in the numbering of the CGNS standard (SIDS, "Unstructured Grid Element Numbering Conventions").
+struct ElementShape {
+  int number;  ///< ElementType_t
+  std::string_view name;
+  int dimension;                               ///< 0 node, 1 line, 2 shell, 3 solid
+  int nodes;                                   ///< per element
+  std::vector<std::vector<int>> faces;         ///< corners, 0-based
+  std::vector<std::array<int, 2>> mid_points;  ///< ends of the edges that the nodes after the corners lie on
+  int corners;
+};
+
+using Faces = std::vector<std::vector<int>>;
+using Edges = std::vector<std::array<int, 2>>;
+
+ElementShape shape(int number, std::string_view name, int dimension, int corners, Faces faces, Edges edges = {},
+                   int further = 0) {
+  int const nodes = corners + int(edges.size()) + further;
+  return {number, name, dimension, nodes, std::move(faces), std::move(edges), corners};
+}
+
+std::vector<ElementShape> all_shapes() {
+  Faces const triangle{{0, 1, 2}}, square{{0, 1, 2, 3}};
+  Edges const around3{{0, 1}, {1, 2}, {2, 0}}, around4{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+  Faces const tetra{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  Faces const pyramid{{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  Faces const prism{{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}, {0, 2, 1}, {3, 4, 5}};
+  Faces const hexa{{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {4, 5, 6, 7}};
+  return {shape(2, "NODE", 0, 1, {}),
+          shape(3, "BAR_2", 1, 2, {}),
+          shape(4, "BAR_3", 1, 2, {}, {{0, 1}}),
+          shape(5, "TRI_3", 2, 3, triangle),
+          shape(6, "TRI_6", 2, 3, triangle, around3),
+          shape(7, "QUAD_4", 2, 4, square),
+          shape(8, "QUAD_8", 2, 4, square, around4),
+          shape(9, "QUAD_9", 2, 4, square, around4, 1),
+          shape(10, "TETRA_4", 3, 4, tetra),
+          shape(11, "TETRA_10", 3, 4, tetra, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}),
+          shape(12, "PYRA_5", 3, 5, pyramid),
+          shape(14, "PENTA_6", 3, 6, prism),
+          shape(15, "PENTA_15", 3, 6, prism, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4}, {2, 5}, {3, 4}, {4, 5}, {5, 3}}),
+          shape(17, "HEXA_8", 3, 8, hexa),
+          shape(18, "HEXA_20", 3, 8, hexa,
+                {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}})};
+}
+
+/// Sorted corners: the same for the two elements that share a face, however each of them lists it.
+std::array<std::int32_t, 4> key_of(ElementFace const& face) {
+  auto key = face.corner;
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+/// The shape with an ElementType_t number; nullptr for shapes that are not read.
+ElementShape const* element_shape(std::int64_t number) {
+  static std::vector<ElementShape> const shapes = all_shapes();
+  auto const found =
+      std::find_if(shapes.begin(), shapes.end(), [&](ElementShape const& k) { return k.number == number; });
+  return found == shapes.end() ? nullptr : &*found;
+}
+
+/// Appends the faces of one element; `nodes` are its numbers in the mesh.
+void add_faces(ElementShape const& shape, std::span<std::int32_t const> nodes, std::vector<ElementFace>& faces) {
+  for (auto const& corners : shape.faces) {
+    ElementFace face;
+    int const n = int(corners.size());
+    for (int s = 0; s < n; ++s) {
+      int const a = corners[s], b = corners[(s + 1) % n];
+      face.corner[s] = nodes[a];
+      for (std::size_t e = 0; e < shape.mid_points.size(); ++e)
+        if (auto const [from, to] = shape.mid_points[e]; (from == a && to == b) || (from == b && to == a))
+          face.amid[s] = nodes[shape.corners + e];
+    }
+    if (shape.dimension == 2 && shape.nodes > shape.corners + int(shape.mid_points.size())) face.middle = nodes.back();
+    faces.push_back(face);
+  }
+}
+
+/// The faces that belong to one element alone, in their order. Cost O(n log n).
+std::vector<ElementFace> outer_faces(std::vector<ElementFace> const& faces) {
+  std::vector<std::pair<std::array<std::int32_t, 4>, std::size_t>> sorted;
+  sorted.reserve(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) sorted.emplace_back(key_of(faces[f]), f);
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::size_t> outer;
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && sorted[end].first == sorted[begin].first) ++end;
+    if (end - begin == 1) outer.push_back(sorted[begin].second);
+  }
+  std::sort(outer.begin(), outer.end());
+  std::vector<ElementFace> out;
+  for (std::size_t const f : outer) out.push_back(faces[f]);
+  return out;
+}
+
+/// Appends the face as linear triangles and quadrilaterals that use each of its nodes.
+void add_facets(ElementFace const& face, std::vector<std::array<std::int32_t, 4>>& facets) {
+  auto const& c = face.corner;
+  auto const& m = face.amid;
+  if (m[0] < 0) {
+    facets.push_back(c);
+  } else if (face.sides() == 3) {
+    facets.insert(facets.end(),
+                  {{c[0], m[0], m[2], -1}, {m[0], c[1], m[1], -1}, {m[2], m[1], c[2], -1}, {m[0], m[1], m[2], -1}});
+  } else if (face.middle >= 0) {
+    facets.insert(facets.end(), {{c[0], m[0], face.middle, m[3]},
+                                 {m[0], c[1], m[1], face.middle},
+                                 {face.middle, m[1], c[2], m[2]},
+                                 {m[3], face.middle, m[2], c[3]}});
+  } else {
+    facets.insert(facets.end(), {{c[0], m[0], m[3], -1},
+                                 {c[1], m[1], m[0], -1},
+                                 {c[2], m[2], m[1], -1},
+                                 {c[3], m[3], m[2], -1},
+                                 {m[0], m[1], m[2], m[3]}});
+  }
+}
 
 constexpr std::int64_t mixed = 20;
 constexpr std::array<char const*, 3> coordinate_names{"CoordinateX", "CoordinateY", "CoordinateZ"};
@@ -140,7 +271,7 @@ class ModelReader {
     for (std::int32_t j = 0; j + 1 < nj; ++j)
       for (std::int32_t i = 0; i + 1 < ni; ++i) {
         std::int32_t const a = first + i + ni * j;
-        cgns::ElementFace face;
+        ElementFace face;
         face.corner = {a, a + 1, a + 1 + ni, a + ni};
         shells_.push_back(face);
       }
@@ -156,7 +287,7 @@ class ModelReader {
     std::vector<std::int32_t> nodes;
     for (std::size_t at = 0; at < numbers.size();) {
       std::int64_t const type = (*types_)((*types_)(head[0]) == mixed ? numbers[at++] : head[0]);
-      auto const* shape = cgns::element_shape(type);
+      auto const* shape = element_shape(type);
       if (shape == nullptr)
         fail(section, "holds elements of type number " + std::to_string(type) +
                           "; read are TRI_3, TRI_6, QUAD_4, QUAD_8, QUAD_9, TETRA_4, TETRA_10, PYRA_5, PENTA_6, "
@@ -183,7 +314,7 @@ class ModelReader {
   std::string wanted_;
   ElementModel out_;
   Problems problems_;
-  std::vector<cgns::ElementFace> shells_, solids_;
+  std::vector<ElementFace> shells_, solids_;
   Index passed_over_ = 0;
   int zones_ = 0;
 };
