@@ -1,7 +1,7 @@
 // The smallest angle of a piece against the angles of its cells' faces one by one, and against formulas.
 #include "support/mesh_builders.hpp"
 
-#include <gridmorph/plan/blocks/smallest_angle.hpp>
+#include <gridmorph/plan/blocks/plan_basis.hpp>
 
 #include <gtest/gtest.h>
 

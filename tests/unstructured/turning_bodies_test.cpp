@@ -12,8 +12,7 @@
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
-#include <gridmorph/plan/elements/surroundings.hpp>
-#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <gtest/gtest.h>
 

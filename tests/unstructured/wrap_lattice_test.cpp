@@ -1,7 +1,7 @@
 // The planes of a wrap's lattice, where they can be written down.
 #include "bodies.hpp"
 
-#include <gridmorph/plan/elements/wrap_lattice.hpp>
+#include <gridmorph/plan/elements/wrap.hpp>
 
 #include <gtest/gtest.h>
 

@@ -49,8 +49,9 @@ struct TurningBodies {
   std::vector<Index32> body_of_driving;  ///< (UnstructuredPlan::driving) -1: none
   std::vector<Index32> rigid;            ///< nodes of the bodies' walls and of the columns on them
   std::vector<kernels::BodyImage>
-      images;                 ///< first the bodies themselves, then as they come again behind free periodic connections
-  std::vector<double> share;  ///< (images, n_nodes) of the image's turn that a node makes, plan/elements/turn_share.hpp
+      images;  ///< first the bodies themselves, then as they come again behind free periodic connections
+  std::vector<double>
+      share;  ///< (images, n_nodes) of the image's turn that a node makes, plan/elements/turning_bodies.hpp
   std::vector<double> shift_share;  ///< (bodies, n_nodes) of the body's shift
 
   [[nodiscard]] Index size() const { return Index(centre.size()); }

@@ -1,6 +1,6 @@
 #include <gridmorph/boundary/regions.hpp>
-#include <gridmorph/plan/blocks/blocks.hpp>
 #include <gridmorph/plan/blocks/edge_star.hpp>
+#include <gridmorph/plan/topology.hpp>
 
 #include <algorithm>
 #include <deque>

@@ -1,7 +1,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/blocks/line_walk.hpp>
-#include <gridmorph/plan/blocks/near_field.hpp>
+#include <gridmorph/plan/blocks/plan_basis.hpp>
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/priority.hpp>
+#include <gridmorph/plan/blocks/plan_basis.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <numbers>
 #include <tuple>
 
-#include <gridmorph/plan/blocks/smallest_angle.hpp>
 #include <gridmorph/plan/blocks/stage_builder.hpp>
 
 namespace gridmorph {

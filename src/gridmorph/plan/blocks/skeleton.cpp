@@ -1,4 +1,4 @@
-#include <gridmorph/plan/blocks/skeleton.hpp>
+#include <gridmorph/plan/blocks/chain_tables.hpp>
 
 #include <algorithm>
 

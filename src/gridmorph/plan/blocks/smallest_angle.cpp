@@ -1,6 +1,6 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
-#include <gridmorph/plan/blocks/smallest_angle.hpp>
+#include <gridmorph/plan/blocks/plan_basis.hpp>
 
 #include <Kokkos_Core.hpp>
 

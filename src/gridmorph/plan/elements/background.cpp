@@ -1,8 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/plan/elements/background.hpp>
-#include <gridmorph/plan/elements/o_type_mesh.hpp>
-#include <gridmorph/plan/elements/spacing.hpp>
 
 #include <algorithm>
 #include <string>

@@ -20,6 +20,7 @@
 #include <gridmorph/plan/prepare.hpp>
 
 #include <optional>
+#include <vector>
 
 namespace gridmorph {
 
@@ -93,3 +94,15 @@ FarRows background_rows(HostInstance const& host, Background const& background, 
                         std::span<Index32 const> nodes);
 
 }  // namespace gridmorph
+
+namespace gridmorph::detail {
+
+/// Blocks between a tube and a box: four around it from end to end; at both ends four more that go on to the box's end
+/// face, and within these the core and the four blocks around it (a butterfly) in front of the tube's flat end.
+/// `box`: planes of the outer box. Throws MeshError when a cell would be inside out.
+Mesh o_type_mesh(Tube const& tube, std::array<std::vector<double>, 3> const& box, double growth);
+
+/// Places from 0 to `length` whose spacing is about `first` at the beginning and grows by `growth` a step.
+std::vector<double> growing(double length, double first, double growth);
+
+}  // namespace gridmorph::detail

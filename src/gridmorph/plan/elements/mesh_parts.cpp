@@ -1,5 +1,5 @@
 #include <gridmorph/core/disjoint_sets.hpp>
-#include <gridmorph/plan/elements/mesh_parts.hpp>
+#include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
 #include <span>

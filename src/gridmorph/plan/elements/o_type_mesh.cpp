@@ -1,6 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/plan/elements/o_type_mesh.hpp>
-#include <gridmorph/plan/elements/spacing.hpp>
+#include <gridmorph/plan/elements/background.hpp>
 
 #include <algorithm>
 #include <map>

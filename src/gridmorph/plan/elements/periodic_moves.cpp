@@ -1,6 +1,6 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/mesh/extent.hpp>
-#include <gridmorph/plan/elements/periodic_moves.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <algorithm>
 #include <cmath>

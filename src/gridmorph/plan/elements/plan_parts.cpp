@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/periodic_moves.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>

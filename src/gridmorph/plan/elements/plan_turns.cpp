@@ -1,6 +1,6 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
-#include <gridmorph/plan/elements/periodic_moves.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>

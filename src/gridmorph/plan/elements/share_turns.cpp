@@ -2,8 +2,7 @@
 // by what it sees.
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
-#include <gridmorph/plan/elements/surroundings.hpp>
-#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>

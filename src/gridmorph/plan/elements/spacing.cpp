@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/spacing.hpp>
+#include <gridmorph/plan/elements/background.hpp>
 
 namespace gridmorph::detail {
 

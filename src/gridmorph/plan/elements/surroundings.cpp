@@ -1,5 +1,5 @@
 #include <gridmorph/core/for_all.hpp>
-#include <gridmorph/plan/elements/surroundings.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <algorithm>
 #include <array>

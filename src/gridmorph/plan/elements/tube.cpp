@@ -1,6 +1,6 @@
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/geometry/unit.hpp>
-#include <gridmorph/plan/elements/tube.hpp>
+#include <gridmorph/plan/elements/wrap.hpp>
 
 #include <algorithm>
 #include <cmath>

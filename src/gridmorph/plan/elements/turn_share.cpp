@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/turn_share.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <gridmorph/geometry/smoothstep.hpp>
 

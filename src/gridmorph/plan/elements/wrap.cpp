@@ -3,7 +3,6 @@
 #include <gridmorph/plan/elements/column_heights.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
 #include <gridmorph/plan/elements/wrap_cells.hpp>
-#include <gridmorph/plan/elements/wrap_lattice.hpp>
 
 #include <algorithm>
 #include <cmath>

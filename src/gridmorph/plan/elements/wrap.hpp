@@ -1,4 +1,6 @@
-// The wrap: cells of a coarse lattice around the moving walls of an unstructured mesh.
+// The wrap: cells of a coarse lattice around the moving walls of an unstructured mesh, or a tube: convex sections
+// strung along a straight axis, their centres on a line that need not be straight, the simplest wrap of a wing, a
+// blade, a rope.
 //
 // What lies in it moves with the walls, element layer by element layer; between it and the outer box of the lattice a
 // structured background mesh carries the displacement (background.hpp). The wrap is simple on purpose: it walks over
@@ -7,15 +9,47 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/plan/elements/chart.hpp>
-#include <gridmorph/plan/elements/tube.hpp>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gridmorph {
+
+/// Sections lie in planes across the axis. Between two of them the tube is ruled: the points of their rings are joined
+/// by straight lines, neighbouring lines by bilinear faces. Both ends are flat.
+struct Tube {
+  int box_axis = 2;  ///< coordinate axis nearest to the tube's
+  Vec3 u, v, axis;   ///< right-handed, orthonormal; u near coordinate axis box_axis + 1
+  int around = 0;    ///< points of a ring, a multiple of 4; ring point 0 lies towards -u -v, the next ones towards u
+  /// Symmetric matrix (uu, uv, vv) that makes sections about round: the rings' points lie at equal angles after it.
+  std::array<double, 3> rounding{1, 0, 1};
+  std::vector<double> station;  ///< position of each section along the axis, ascending
+  std::vector<Vec3> centre;     ///< of each section
+  std::vector<Vec3> ring;       ///< (sections, around)
+
+  [[nodiscard]] int sections() const { return int(station.size()); }
+  [[nodiscard]] Vec3 const& point(int section, int k) const {
+    return ring[std::size_t(section) * std::size_t(around) + std::size_t(k % around)];
+  }
+  [[nodiscard]] double length() const { return station.back() - station.front(); }
+  /// Largest distance of a ring point from its section's centre.
+  [[nodiscard]] double largest_radius() const;
+  [[nodiscard]] bool contains(Vec3 const& point) const;
+  /// Whether a box meets the tube: looks at 27 points of the box, and for boxes that these miss at the rings' points.
+  [[nodiscard]] bool meets(LatticeBox const& box) const;
+};
+
+/// Fits a tube around walls: along their principal axis, sections with the convex hull of the walls near them, made
+/// larger by the offset and smooth along the axis. Hollows and details of the sections go; all wall nodes are inside.
+/// Nothing, and the reason in `note`, where the walls are less than 1.25 times as long as wide or leave gaps along
+/// their axis. Linear cost.
+std::optional<Tube> fit_tube(Mesh const& mesh, std::span<CsrGraph const> walls, double offset, std::string& note);
 
 struct WrapOptions {
   double offset = 0;  ///< every point of the mesh that is closer to a moving wall is wrapped; positive
@@ -119,3 +153,17 @@ double suggest_offset(OffsetHints const& hints);
 Mesh wrap_mesh(Wrap const& wrap);
 
 }  // namespace gridmorph
+
+namespace gridmorph::detail {
+
+/// How far the offset goes in chart coordinates, for each wall face in turn: the offset times the length of each
+/// coordinate's gradient there. So a point of space that is closer than the offset is so in the chart.
+using Reaches = std::vector<std::array<double, 3>>;
+Reaches reaches_of(Coordinates const& places, Chart const& chart, std::span<CsrGraph const> walls, double offset);
+
+/// Planes of the lattice and a cell flag for each of its cells, all of them 0. `coordinates`: of all nodes, in the
+/// chart.
+Wrap make_lattice(Mesh const& mesh, Coordinates const& coordinates, std::span<CsrGraph const> walls,
+                  Reaches const& reach, LatticeBox const& domain, WrapOptions const& options);
+
+}  // namespace gridmorph::detail

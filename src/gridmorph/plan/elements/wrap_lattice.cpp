@@ -1,4 +1,4 @@
-#include <gridmorph/plan/elements/wrap_lattice.hpp>
+#include <gridmorph/plan/elements/wrap.hpp>
 
 #include <algorithm>
 #include <cmath>
