@@ -1,7 +1,7 @@
 // The keys of rule = "inflate": the heights they become, and what is refused with which line.
 #include "case_text.hpp"
 
-#include <gridmorph/case/detail/inflate_reader.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 
 namespace gridmorph::testing {
 namespace {

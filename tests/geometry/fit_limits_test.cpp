@@ -3,7 +3,6 @@
 #include "support/random.hpp"
 
 #include <gridmorph/geometry/affine_fit.hpp>
-#include <gridmorph/geometry/height_fit.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 

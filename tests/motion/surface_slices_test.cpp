@@ -2,7 +2,7 @@
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/turbomachinery/surface_slices.hpp>
+#include <gridmorph/motion/turbomachinery/blade_surface.hpp>
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
+#include <gridmorph/motion/target/edge_images.hpp>
 #include <gridmorph/motion/target/feature_edges.hpp>
-#include <gridmorph/motion/target/feature_loops.hpp>
 #include <gridmorph/motion/target/feature_path.hpp>
-#include <gridmorph/motion/target/surface_pieces.hpp>
+#include <gridmorph/motion/target/target_projection.hpp>
 
 #include <random>
 

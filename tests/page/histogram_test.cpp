@@ -1,5 +1,5 @@
 // Histograms: each cell once, in the bin that holds its value.
-#include <gridmorph/page/histogram.hpp>
+#include <gridmorph/page/report_page.hpp>
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <gridmorph/boundary/inward_facets.hpp>
 #include <gridmorph/boundary/periodic_copies.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
-#include <gridmorph/report/clearance_wall.hpp>
+#include <gridmorph/report/tip_clearance.hpp>
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <gridmorph/boundary/periodic_copies.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/report/clearance_wall.hpp>
+#include <gridmorph/report/tip_clearance.hpp>
 
 #include <gtest/gtest.h>
 

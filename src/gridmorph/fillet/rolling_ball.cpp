@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/rolling_ball.hpp>
+#include <gridmorph/fillet/wall_path.hpp>
 
 #include <gridmorph/geometry/unit.hpp>
 

@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/root_line.hpp>
+#include <gridmorph/fillet/mitre_path.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/unit.hpp>

@@ -1,4 +1,4 @@
-#include <gridmorph/fillet/root_section.hpp>
+#include <gridmorph/fillet/root_sections.hpp>
 
 #include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/geometry/unit.hpp>

@@ -2,7 +2,7 @@
 
 #include <gridmorph/geometry/facet_boxes.hpp>
 #include <gridmorph/geometry/facet_topology.hpp>
-#include <gridmorph/geometry/height_fit.hpp>
+#include <gridmorph/geometry/plane_fit.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include <gridmorph/geometry/height_fit.hpp>
+#include <gridmorph/geometry/plane_fit.hpp>
 
 #include <array>
 #include <cmath>

@@ -14,9 +14,9 @@
 #include <gridmorph/io/vtk/blocks.hpp>
 #include <gridmorph/io/vtk/pieces.hpp>
 #include <gridmorph/io/vtk/vtk_mesh.hpp>
+#include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/mesh.hpp>
-#include <gridmorph/mesh/middle_pairs.hpp>
 
 #include <algorithm>
 #include <filesystem>

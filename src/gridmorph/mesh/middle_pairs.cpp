@@ -1,4 +1,4 @@
-#include <gridmorph/mesh/middle_pairs.hpp>
+#include <gridmorph/mesh/coincident_pairs.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 

@@ -1,5 +1,5 @@
 #include <gridmorph/geometry/symmetric_eigen.hpp>
-#include <gridmorph/page/cell_picture.hpp>
+#include <gridmorph/page/report_page.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include <gridmorph/page/histogram.hpp>
+#include <gridmorph/page/report_page.hpp>
 #include <gridmorph/report/measure_text.hpp>
 
 #include <fmt/format.h>

@@ -5,17 +5,51 @@
 // so. Numbers are those of the JSON report, which is a part of what it is made from.
 #pragma once
 
-#include <gridmorph/page/cell_picture.hpp>
-#include <gridmorph/page/histogram.hpp>
+#include <gridmorph/page/picture_mesh.hpp>
+#include <gridmorph/quality/quality.hpp>
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace gridmorph::page {
+
+/// How many cells have which value of a measure, baseline and morphed.
+struct Histogram {
+  Measure measure = Measure::determinant_3x3x3;
+  std::vector<double> edge;  ///< (bins + 1), ascending; what lies outside is in the first or the last bin
+  std::vector<Index> before,
+      after;  ///< (bins) of cells that were looked at; values that are no number are where the worst ones are
+  std::string title;
+};
+
+/// Edges that suit a measure: determinants and angles evenly, aspect ratios evenly on a logarithmic scale up to
+/// `largest`.
+std::vector<double> histogram_edges(Measure measure, double largest);
+
+/// Values of cells counted, [0] of those that are not `in` and [1] of those that are, with the same edges. Cost
+/// O(values).
+std::array<Histogram, 2> histograms(Measure measure, std::vector<double> const& before,
+                                    std::vector<double> const& after, std::vector<char> const& in);
+
+/// An SVG that takes its colours from the page: bars of the baseline behind, those of the morphed mesh as a line.
+/// Heights are logarithmic: one bad cell among a million is to be seen.
+std::string histogram_svg(Histogram const& histogram);
+
+/// One cell and those around it, in a parallel view.
+struct CellDrawing {
+  std::string baseline, morphed;  ///< SVG that takes its colours from the page
+  double stretch = 1;             ///< of the shortest direction of the cell against its longest; 1: true to scale
+};
+
+/// Both from one direction and to one scale. A thin cell is stretched along its principal axes, by one linear map for
+/// both drawings: that keeps the sign of every Jacobian and all ratios of determinants, not angles. Cost: cells around
+/// this one.
+CellDrawing draw_cell(PictureMesh const& mesh, Index cell, Coordinates const& baseline, Coordinates const& morphed);
 
 /// What one rule moved.
 struct RuleRow {

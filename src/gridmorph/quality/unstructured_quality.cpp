@@ -5,7 +5,7 @@
 #include <gridmorph/quality/detail/fast_quality.hpp>
 #include <gridmorph/quality/detail/judge_cells.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
-#include <gridmorph/quality/detail/wall_columns.hpp>
+#include <gridmorph/quality/detail/wall_quality.hpp>
 #include <gridmorph/quality/detail/zone_cells.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 

@@ -1,4 +1,4 @@
-#include <gridmorph/report/clearance_wall.hpp>
+#include <gridmorph/report/tip_clearance.hpp>
 
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>

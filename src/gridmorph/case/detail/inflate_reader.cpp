@@ -1,5 +1,5 @@
-#include <gridmorph/case/detail/inflate_reader.hpp>
 #include <gridmorph/case/detail/number_table.hpp>
+#include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>
 #include <gridmorph/case/formula.hpp>
 #include <gridmorph/core/error.hpp>

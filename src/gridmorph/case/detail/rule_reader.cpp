@@ -1,4 +1,3 @@
-#include <gridmorph/case/detail/inflate_reader.hpp>
 #include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>

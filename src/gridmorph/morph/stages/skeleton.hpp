@@ -1,7 +1,6 @@
 // The stages of a morph of blocks: on the skeleton, the faces, edges and corners of all pieces.
 #pragma once
 
-#include <gridmorph/morph/detail/block_turn_gradients.hpp>
 #include <gridmorph/morph/detail/block_turns.hpp>
 #include <gridmorph/morph/detail/transposed_plan.hpp>
 #include <gridmorph/morph/device_plan.hpp>

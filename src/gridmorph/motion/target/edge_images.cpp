@@ -1,7 +1,6 @@
 #include <gridmorph/motion/target/edge_images.hpp>
 
 #include <gridmorph/geometry/affine_fit.hpp>
-#include <gridmorph/motion/target/feature_loops.hpp>
 #include <gridmorph/motion/target/feature_path.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/feature_loops.hpp>
+#include <gridmorph/motion/target/edge_images.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/target/surface_pieces.hpp>
+#include <gridmorph/motion/target/target_projection.hpp>
 
 #include <gridmorph/core/disjoint_sets.hpp>
 

@@ -4,7 +4,6 @@
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/motion/target/edge_images.hpp>
 #include <gridmorph/motion/target/feature_edges.hpp>
-#include <gridmorph/motion/target/surface_pieces.hpp>
 #include <gridmorph/motion/target/surface_spread.hpp>
 
 #include <algorithm>

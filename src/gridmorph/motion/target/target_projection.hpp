@@ -5,10 +5,16 @@
 #include <gridmorph/geometry/target_tree.hpp>
 
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
+
+/// The number of the piece that each facet belongs to: facets that share an edge belong together unless the edge is
+/// among `cuts` (smaller vertex first). Numbered in the order of their first facets. Cost O(facets log facets).
+std::vector<int> pieces_between(std::vector<GridFacet> const& facets, std::set<std::pair<int, int>> const& cuts);
 
 /// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly
 /// elsewhere.

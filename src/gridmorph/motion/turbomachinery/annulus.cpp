@@ -1,4 +1,4 @@
-#include <gridmorph/motion/turbomachinery/annulus.hpp>
+#include <gridmorph/motion/turbomachinery/row_motion.hpp>
 
 #include <gridmorph/core/error.hpp>
 

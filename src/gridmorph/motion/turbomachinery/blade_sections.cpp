@@ -1,4 +1,4 @@
-#include <gridmorph/motion/turbomachinery/blade_sections.hpp>
+#include <gridmorph/motion/turbomachinery/row_motion.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/turbomachinery/section_interpolation.hpp>

@@ -4,7 +4,6 @@
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/detail/spanwise_lines.hpp>
-#include <gridmorph/motion/turbomachinery/surface_slices.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 
 #include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/motion/turbomachinery/facet_cuts.hpp>
 #include <gridmorph/motion/turbomachinery/wall_curve.hpp>
 
 #include <functional>
@@ -11,6 +12,28 @@
 #include <vector>
 
 namespace gridmorph {
+
+/// One contour along the span: lines of places from its lower to its upper end, in their order around the sections.
+struct SlicedContour {
+  std::vector<std::vector<SlicePlace>> lines;
+  bool closed = false;
+};
+
+/// Cuts the facets of blades at evenly spaced span fractions (17 to 129, two for each facet along the span) and gives
+/// every section points in the same places: at the ends of an open section, at the corners of its edges (an edge that
+/// turns by more than 50 degrees within a tenth of the chord of the end of the section), or at the end itself where it
+/// is round, and 65 between two of these, by arc length, denser towards the edges. Points that follow one another along
+/// the span make the lines that grid lines of blocks are. They lie on the facets, so that sections are off a smooth
+/// surface by O(h^2), h the length of a facet.
+///
+/// What gains less span than 0.3 of its length (tip faces, rims of squealers) is no part of a section. Every part that
+/// hangs together gives one contour, the one that reaches farthest in each section: what else is cut, as walls of
+/// holes, lies inside and goes along; pieces of a contour with gaps of less than a tenth of the chord between them
+/// (holes in the surface) are one. So do parts that lie inside another's contour, or have less than half of its span
+/// (inner walls of a squealer). The span fractions are those where all parts have whole sections. `notes` says how many
+/// parts were passed over. Throws MotionError when no part has sections. Cost O(facets log), and of each section the
+/// facets beside it.
+std::vector<SlicedContour> slice_surface(SliceInput const& input, std::vector<std::string>& notes);
 
 struct BladeNode {
   double m = 0;              ///< position along the flow path: the axial position where that is axial
@@ -29,7 +52,7 @@ struct BladeSurface {
   std::vector<BladeNode> nodes;
   std::vector<std::vector<int>> lines;  ///< nodes from hub to case
   std::vector<BladeContour> contours;
-  bool sliced = false;  ///< lines were made by cutting facets (surface_slices.hpp): they are no lines of nodes
+  bool sliced = false;  ///< lines were made by cutting facets (slice_surface()): they are no lines of nodes
 };
 
 /// What stitch_blade needs to know about nodes.

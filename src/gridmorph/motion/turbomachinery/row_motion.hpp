@@ -1,11 +1,14 @@
-// One blade row: how inlet, exit and periodics take up the motion of its blade.
+// One blade row: hub and case with the coordinates between them, the motion of the blade's camber surface, tabulated
+// over span and chord, and how inlet, exit and periodics take up the motion of the blade.
 #pragma once
 
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/motion/detail/slip_surfaces.hpp>
-#include <gridmorph/motion/turbomachinery/annulus.hpp>
-#include <gridmorph/motion/turbomachinery/blade_sections.hpp>
+#include <gridmorph/motion/turbomachinery/blade_surface.hpp>
+#include <gridmorph/motion/turbomachinery/span_table.hpp>
+#include <gridmorph/motion/turbomachinery/wall_curve.hpp>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +17,121 @@
 #include <vector>
 
 namespace gridmorph {
+
+/// Mid-camber motion: the mean of the motions of the blade's sides at equal span fraction and axial chord fraction.
+///
+/// Sections are taken at evenly spaced span fractions, split at their edges into sides, and each side is tabulated over
+/// the chord angle phi, chord fraction = (1 - cos phi) / 2: a rounded leading edge is smooth in phi, while the chord
+/// fraction would see a square root. Between table entries: cubic convolution (Keys 1981), C1, third order, exact for
+/// zero and linear data.
+///
+/// An edge is the line where the sides of an H mesh end: there the motion of its nodes is reproduced, so that periodics
+/// that meet the blade in that line agree with it to round-off. Where a surface goes around the edge (O and C meshes),
+/// it is the most upstream or downstream point of the section, found between grid lines by a parabola.
+class BladeSections {
+ public:
+  /// Throws MotionError when the sections have no axial chord or the spanwise lines have no span in common.
+  explicit BladeSections(BladeSurface const& blade);
+
+  /// Axial positions of leading and trailing edge. Beyond the first and last section: theirs.
+  [[nodiscard]] double leading(double span) const { return leading_.at(span)[0]; }
+  [[nodiscard]] double trailing(double span) const { return trailing_.at(span)[0]; }
+
+  /// Chord fraction 0 is the leading edge, 1 the trailing edge; clamped to these.
+  [[nodiscard]] CylindricalMotion motion(double span, double chord_fraction) const;
+
+  /// How far the motions of the contours' edges are from their mean, which the edges of the row get: nothing but
+  /// rounding for one blade, and for copies that move alike; what blunt edges make of two sides.
+  struct EdgeSpread {
+    double length = 0;  ///< along the flow or the span, in chords
+    double angle_rad = 0;
+  };
+  [[nodiscard]] EdgeSpread edge_spread() const { return edge_spread_; }
+
+  /// The value of BladeSurface::sliced: whether lines were made by cutting facets.
+  [[nodiscard]] bool sliced() const { return sliced_; }
+  [[nodiscard]] double first_span() const { return span_lo_; }
+  [[nodiscard]] double last_span() const { return span_hi_; }
+  /// How far any of its lines reaches: beyond the sections where lines end apart, as beside a groove.
+  [[nodiscard]] double lowest_span() const { return lowest_; }
+  [[nodiscard]] double highest_span() const { return highest_; }
+  /// Smallest leading and largest trailing edge position: the blade's axial range.
+  [[nodiscard]] double most_upstream() const;
+  [[nodiscard]] double most_downstream() const;
+
+ private:
+  using Components = std::array<double, 3>;  ///< axial, radial, angle
+
+  [[nodiscard]] Components tabulated(double span, double chord_fraction) const;
+
+  bool sliced_ = false;
+  EdgeSpread edge_spread_;
+  double span_lo_ = 0, span_hi_ = 0, lowest_ = 0, highest_ = 0;
+  int n_sections_ = 0;
+  std::vector<Components> motion_;  ///< (n_sections, n_chord), chord fastest
+  SpanTable leading_, trailing_;
+};
+
+/// Where the flow path is axial all along the blade, the coordinates are axial position and radial fraction between hub
+/// and case. Where its walls turn towards the radius, they are FlowCoordinates between the curves of hub and case.
+class Annulus {
+ public:
+  /// The end walls of the row, each between the ends of what the row has of it.
+  using Walls = std::function<std::vector<WallPiece>()>;
+
+  /// The annulus of a row, from the slip surfaces of revolution in its zones when there are some inside and some
+  /// outside of the blade; otherwise from the blade's own range of radii. Keeps pointers to `surfaces`. `walls` is
+  /// asked when the flow path turns; without it, the whole candidates are the walls.
+  Annulus(SlipSurfaces const& surfaces, std::vector<int> const& candidates, std::vector<MeridionalPoint> const& blade,
+          Walls const& walls = {});
+
+  /// Whether both end walls are known: then nodes can be kept on them.
+  [[nodiscard]] bool has_walls() const { return turning_ || (!inner_.empty() && !outer_.empty()); }
+  /// Whether the flow path turns from axial to radial.
+  [[nodiscard]] bool turns() const { return turning_.has_value(); }
+  [[nodiscard]] FlowPosition position(MeridionalPoint const& p) const;
+  /// position(p).m, also where there is no span, beyond the ends of hub and case.
+  [[nodiscard]] double along(MeridionalPoint const& p) const { return turning_ ? turning_->position(p).m : p.axial; }
+  /// The span fraction of a point: 0 at the hub, 1 at the case.
+  [[nodiscard]] double span(MeridionalPoint const& p) const { return position(p).h; }
+  /// Distance from hub to case through p.
+  [[nodiscard]] double height(MeridionalPoint const& p) const;
+
+  /// What a displacement of a point at p is for points at other span fractions and along the flow: how far it goes
+  /// along the flow path, how far it departs from its span fraction (a length where the path is axial, a fraction where
+  /// it turns), and its angle. Exactly zero for zero.
+  [[nodiscard]] CylindricalMotion components(MeridionalPoint const& p, CylindricalMotion const& motion) const;
+  /// The inverse of components().
+  [[nodiscard]] CylindricalMotion motion(MeridionalPoint const& p, CylindricalMotion const& components) const;
+
+ private:
+  using Profiles = std::vector<RevolutionProfile const*>;
+  /// The profile whose axial range holds the position, or comes nearest.
+  static RevolutionProfile const& at(Profiles const& profiles, double axial);
+  /// Makes FlowCoordinates of the walls, and checks that the blade lies between them.
+  void turn(std::vector<WallPiece> pieces, std::vector<MeridionalPoint> const& blade);
+  /// Whether hub or case run across the axis more than along it (a slope of 2) over the blade, or somewhere along it
+  /// when the other ends there.
+  [[nodiscard]] bool is_steep_along(std::vector<MeridionalPoint> const& blade) const;
+  /// Whether the profiles over the axial position of both hub and case reach from end to end of the blade.
+  [[nodiscard]] bool spans(std::vector<MeridionalPoint> const& blade) const;
+  /// How much the radius changes when the axial position does and the span fraction does not. Exactly zero for zero,
+  /// and where the end walls are not known.
+  [[nodiscard]] double radius_change(MeridionalPoint const& p, double axial) const;
+
+  Profiles inner_, outer_;
+  double r_lo_ = 0, r_hi_ = 0;
+  std::optional<FlowCoordinates> turning_;
+};
+
+/// Whether patches of this kind are the inlet, the exit or a mixing plane of a row: never its hub or case, also where
+/// they slip on a surface of revolution.
+bool ends_row(PatchKind kind);
+
+/// Parts of the slip surfaces of end walls that the row's zones have: revolution, meridional, and walls on planes
+/// across the axis.
+std::vector<WallPiece> walls_of_row(Boundary const& boundary, SlipSurfaces const& surfaces,
+                                    std::vector<bool> const& in_row, CylindricalFrame const& frame);
 
 /// The frame of the row that holds the blades: about the axis, or that of a linear cascade where its periodic
 /// connections are translations across the axis (one direction; where there are several, that of the connections which

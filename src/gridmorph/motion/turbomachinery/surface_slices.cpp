@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/turbomachinery/blade_surface.hpp>
 #include <gridmorph/motion/turbomachinery/sliced_part.hpp>
-#include <gridmorph/motion/turbomachinery/surface_slices.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/mesh/opposite_side.hpp>
-#include <gridmorph/quality/detail/wall_columns.hpp>
+#include <gridmorph/quality/detail/wall_quality.hpp>
 #include <gridmorph/quality/detail/wall_sums.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
