@@ -63,7 +63,8 @@ void add_second_planes(Layout const& layout, Mesh& mesh, Problems& problems) {
       IndexRange range{{0, 0, 0}, mesh.zones[z].extent};
       range.begin[axis] = side;
       range.end[axis] = side + 1;
-      mesh.patches.push_back({std::string(plane_patch_name), "BCSymmetryPlane", PatchKind::symmetry, {}, int(z), range});
+      mesh.patches.push_back(
+          {std::string(plane_patch_name), "BCSymmetryPlane", PatchKind::symmetry, {}, int(z), range});
     }
   }
   if (mesh.coordinates.size() == 0) return;
