@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 InflateRule bulbs_of(std::string const& lines) { return std::get<InflateRule>(rule_of("rule = \"bulb\"\n" + lines)); }
@@ -78,4 +78,4 @@ TEST(ExtendRuleText, NamesItsWalls) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::string const head = "[mesh]\ninput = \"in.cgns\"\n";
@@ -333,4 +333,4 @@ TEST(CaseFileErrors, AConstantThatNoFormulaCanNameHasItsLine) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -3,7 +3,7 @@
 
 #include <gridmorph/morph/morph.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::string const smallest = "[mesh]\ninput = \"in.cgns\"\n[[motion]]\npatches = \"a\"\nrule = \"fixed\"\n";
@@ -145,4 +145,4 @@ TEST(Sequence, OfVeryManyStepsSomeAreLookedAtAheadOfTimeTheFirstAndTheLastAmongT
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 /// One row of a table of the docs.
@@ -282,4 +282,4 @@ TEST(CaseKeys, EveryLineIsComplete) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

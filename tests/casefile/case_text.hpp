@@ -18,7 +18,7 @@
 #include <variant>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 using test::TemporaryFolder;
 
@@ -84,4 +84,4 @@ inline Rule rule_of(std::string const& lines) {
     EXPECT_NEAR(left.z, right.z, tolerance); \
   } while (false)
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

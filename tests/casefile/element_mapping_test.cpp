@@ -3,7 +3,7 @@
 
 #include <gridmorph/mapping/facet_map.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 Vec3 linear(Vec3 const& p) { return {1 + 2 * p.x - p.y, 3 * p.z - 0.5 * p.x, p.x + p.y + p.z - 2}; }
@@ -249,4 +249,4 @@ TEST(NodalRotations, AreThoseOfRigidMotionsUpToNearlyHalfATurn) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

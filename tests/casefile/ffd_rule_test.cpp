@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 FfdRule ffd_of(std::string const& lines) { return std::get<FfdRule>(rule_of("rule = \"ffd\"\n" + lines)); }
@@ -167,4 +167,4 @@ TEST(FfdRuleErrors, OfTablesAndLatticesNameFileAndLine) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -137,4 +137,4 @@ TEST(Formula, TellsNamesThatConstantsMayHave) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -3,7 +3,7 @@
 
 #include <gridmorph/case/ignored_keys.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using Run = CaseUse::Run;
@@ -125,4 +125,4 @@ TEST(IgnoredKeys, OfRulesAreErrorsWhileTheFileIsRead) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -3,7 +3,7 @@
 
 #include <gridmorph/case/detail/rule_kinds.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 InflateRule inflate_of(std::string const& lines) {
@@ -111,4 +111,4 @@ TEST(InflateRuleErrors, OfTablesNameTheLineInTheFile) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -13,7 +13,7 @@
 #include <functional>
 #include <random>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using Map = std::function<Vec3(Vec3 const&)>;
@@ -329,4 +329,4 @@ TEST_F(PlacedField, IsRefusedWithWhatWouldDo) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -3,7 +3,7 @@
 
 #include <gridmorph/mapping/modal_field.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
@@ -199,4 +199,4 @@ TEST_F(ModalCase, ProblemsOfTheSequenceHaveTheirLine) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

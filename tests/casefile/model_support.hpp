@@ -10,7 +10,7 @@
 #include <functional>
 #include <numbers>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 /// A grid of (nu, nv) nodes at place(s, t), s and t in [0, 1], as quadrilaterals, or as triangles two by two.
 inline StructuralModel grid_model(int nu, int nv, std::function<Vec3(double, double)> const& place,
@@ -60,4 +60,4 @@ inline double largest_error(PointField const& field, std::vector<Vec3> const& at
   return worst;
 }
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

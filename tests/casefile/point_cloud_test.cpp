@@ -2,7 +2,7 @@
 
 #include <gridmorph/mapping/point_cloud.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::vector<std::string> problems_in(std::string const& text) {
@@ -101,4 +101,4 @@ TEST(PointCloud, ReportsMissingFilesAndFolders) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 Vec3 at(PointField const& field, Vec3 const& p) {
@@ -345,4 +345,4 @@ TEST(PointField, DoesNotDependOnTheOrderOfEvaluation) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

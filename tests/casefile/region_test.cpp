@@ -3,7 +3,7 @@
 
 #include <gridmorph/motion/shock/shock_search.hpp>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::string const mesh_and_rule =
@@ -144,4 +144,4 @@ TEST(RegionText, TheRuleShockNamesTheFileThatItGoesTo) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 Vec3 moved(Rule const& rule, Vec3 const& p) {
@@ -208,4 +208,4 @@ TEST(FreeRuleText, ReadsItsConstraint) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

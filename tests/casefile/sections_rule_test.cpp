@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using Stations = std::vector<std::pair<double, double>>;
@@ -104,4 +104,4 @@ TEST(SectionsRuleErrors, OfFilesNameTheLineInTheFile) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -18,7 +18,7 @@
 #include <array>
 #include <map>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 Mesh bare(Mesh mesh) {
@@ -154,4 +154,4 @@ TEST(SideFile, IsTheFileOfTheSameNameUnlessThatIsACaseFile) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -1,7 +1,7 @@
 // Structural models as text: nodes, elements, and files that are damaged.
 #include "model_support.hpp"
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 PointCloud nodes_of(std::string const& text) { return parse_point_cloud(text, "n.csv"); }
@@ -113,4 +113,4 @@ TEST(StructuralModel, CaseFilesNameModelAndElements) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

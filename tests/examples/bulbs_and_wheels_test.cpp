@@ -6,7 +6,7 @@
 #include <array>
 #include <map>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -143,4 +143,4 @@ TEST_P(WheelExample, KaplanWheelClosesAndItsThirdRunnerBladeOpensLess) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -20,7 +20,7 @@
 
 #include <sys/wait.h>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 inline std::string contents(std::filesystem::path const& path) {
   std::ostringstream text;
@@ -192,4 +192,4 @@ inline std::string stand_in_or_not(::testing::TestParamInfo<bool> const& info) {
   return info.param ? "stand_in" : "of_others";
 }
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

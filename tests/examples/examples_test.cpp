@@ -11,7 +11,7 @@
 #include <map>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 constexpr double deg = 0.017453292519943295;
@@ -629,4 +629,4 @@ TEST_F(Example, DemosAreWhereTheyWere) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 /// Some nodes of all zones, the same ones for meshes of as many nodes.
 inline std::vector<Index> sampled_nodes(Mesh const& mesh) {
@@ -51,4 +51,4 @@ inline void expect_as_before(std::string const& name, Mesh const& mesh) {
   }
 }
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

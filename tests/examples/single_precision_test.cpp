@@ -7,7 +7,7 @@
 #include <regex>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SinglePrecisionExample, ::testing::ValuesIn(all_exa
                          [](auto const& info) { return info.param; });
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

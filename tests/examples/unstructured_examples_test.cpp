@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class UnstructuredExample : public Example {
@@ -237,4 +237,4 @@ TEST_F(UnstructuredExample, CooledBladeKeepsTheShapesOfItsFeatures) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 constexpr double pitch = 0.3;
 
@@ -183,4 +183,4 @@ inline Surface outlet_plane(int spanwise, int around) {
           {}};
 }
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -18,7 +18,7 @@ using test::message_of;
 using test::motion_on;
 using test::points_of;
 
-using namespace testing;  // the annulus and its formulas
+using namespace test;  // the annulus and its formulas
 
 enum RuleNumber { blade_rule_number, slide_number, follow_number, slip_number };
 

@@ -14,7 +14,7 @@
 namespace gridmorph::test {
 namespace {
 
-using namespace gridmorph::testing;
+using namespace gridmorph::test;
 
 SpanwiseTable same(double value) { return {{{0, value}}}; }
 

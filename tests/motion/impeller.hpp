@@ -7,7 +7,7 @@
 
 #include "annulus.hpp"
 
-namespace gridmorph::testing::impeller {
+namespace gridmorph::test::impeller {
 
 constexpr double centre_radius = 1.1, hub_bend = 0.8, case_bend = 0.5;
 constexpr double pitch = 0.5;
@@ -109,4 +109,4 @@ inline Surface periodic() {
   return {"periodic", PatchKind::other, {61, 31}, [](double s, double h) { return point({s, h, 0.2 * s}); }, {}};
 }
 
-}  // namespace gridmorph::testing::impeller
+}  // namespace gridmorph::test::impeller

@@ -271,7 +271,7 @@ TEST(Inflate, SharpEdgesGoNoFartherThanTwoHeights) {
 }
 
 TEST(Inflate, PlacesOnABladeAreSpanChordAndSide) {
-  using namespace gridmorph::testing;
+  using namespace gridmorph::test;
   RowMesh row;
   row.add(o_blade(161, 41));
   row.add(end_wall("hub", 0, 401, 5));
@@ -299,7 +299,7 @@ TEST(Inflate, PlacesOnABladeAreSpanChordAndSide) {
 }
 
 TEST(Inflate, HeightsAboveTheChordAreRefusedWhereTheyAreLimitedByIt) {
-  using namespace gridmorph::testing;
+  using namespace gridmorph::test;
   RowMesh row;
   row.add(o_blade(81, 21));
   InflateRule raise = by([](SurfacePlace const& p) { return p.chord_fraction < 0.01 ? 1.0 : 0.0; });

@@ -22,11 +22,11 @@ using test::message_of;
 using test::motion_on;
 using test::points_of;
 
-using testing::angle_of;
-using testing::BladeMotion;
-using testing::radius_of;
-using testing::RowMesh;
-namespace impeller = testing::impeller;
+using test::angle_of;
+using test::BladeMotion;
+using test::radius_of;
+using test::RowMesh;
+namespace impeller = test::impeller;
 using impeller::bend_of;
 using impeller::Place;
 using impeller::place_of;
@@ -298,7 +298,7 @@ struct Diffuser {
   double slope_rad;
   [[nodiscard]] Vec3 point(double s, double h, double theta) const {
     double const c = std::cos(slope_rad), n = std::sin(slope_rad);
-    return testing::cylindrical(0.8 * s * c - 0.2 * h * n, 1 + 0.8 * s * n + 0.2 * h * c, theta);
+    return test::cylindrical(0.8 * s * c - 0.2 * h * n, 1 + 0.8 * s * n + 0.2 * h * c, theta);
   }
   [[nodiscard]] Place place_of(Vec3 const& p) const {
     double const c = std::cos(slope_rad), n = std::sin(slope_rad), x = p.x, r = radius_of(p) - 1;
@@ -499,7 +499,7 @@ TEST(TurningWall, RatesAreDerivatives) {
 TEST(TurningWall, AWallAcrossTheAxisKeepsTheRadiusOfWhatSlidesOnIt) {
   RowMesh row;
   row.add(
-      {"disc", PatchKind::wall, {31, 7}, [](double s, double t) { return testing::cylindrical(0.25, 1 + s, t); }, {}});
+      {"disc", PatchKind::wall, {31, 7}, [](double s, double t) { return test::cylindrical(0.25, 1 + s, t); }, {}});
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"disc"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};

@@ -17,7 +17,7 @@
 namespace gridmorph {
 namespace {
 
-using namespace testing;
+using namespace test;
 using test::expect_all_in;
 using test::message_of;
 using test::motion_on;

@@ -19,7 +19,7 @@ using kernels::SlipSurfaceView;
 using test::expect_all_in;
 using test::message_of;
 
-using namespace testing;  // the annulus and its formulas
+using namespace test;  // the annulus and its formulas
 
 SlipRule revolution() { return {.surface = SlipRule::Surface::revolution}; }
 

@@ -15,8 +15,8 @@
 namespace gridmorph::test {
 namespace {
 
-using testing::RowMesh;
-using testing::Surface;
+using test::RowMesh;
+using test::Surface;
 
 constexpr double stagger = 0.35, chord_length = 1.5, wing_span = 4;
 RigidTransform const tilted{rotation_matrix({1 / 3.0, -2 / 3.0, 2 / 3.0}, 0.7), {3, -1, 2}};

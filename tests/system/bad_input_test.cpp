@@ -1,7 +1,7 @@
 // Bad input gets status 2 and one clear message, and leaves nothing behind.
 #include "run_command.hpp"
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using BadInput = CommandTest;
@@ -111,4 +111,4 @@ TEST_F(BadInput, OutputsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <utility>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class FoundBlocksRun : public CommandTest {
@@ -230,4 +230,4 @@ TEST_F(FoundBlocksRun, TablesAndZonesOfTheFileHoldForTheBlocks) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

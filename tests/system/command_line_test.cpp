@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using CommandLine = CommandTest;
@@ -162,4 +162,4 @@ TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsAFailureOfTheMachine) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

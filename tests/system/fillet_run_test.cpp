@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class FilletRuns : public CommandTest {
@@ -127,4 +127,4 @@ surface = "revolution"
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

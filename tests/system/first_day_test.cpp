@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <functional>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -347,4 +347,4 @@ TEST_F(FirstDay, APassageWithResolvedEndWallsInSinglePrecisionMorphsByTheSuggest
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

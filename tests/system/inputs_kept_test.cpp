@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::string const vtu_cube =
@@ -187,4 +187,4 @@ TEST_F(InputsKept, ACaseOfOpenFoamIsNotItsOwnOutputByWhateverItIsNamed) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

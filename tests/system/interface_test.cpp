@@ -8,7 +8,7 @@
 #include <regex>
 #include <set>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel", "fillet",
@@ -227,4 +227,4 @@ TEST_F(CommandInterface, KeysWithoutAnEffectOnTheMeshAreErrorsBeforeAnyWork) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -16,7 +16,7 @@
 #include <sstream>
 #include <utility>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using MorphRun = CommandTest;
@@ -596,4 +596,4 @@ TEST_F(MorphRun, ADiskThatIsFullIsAFailureOfTheMachineAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 using PageRun = CommandTest;
@@ -186,4 +186,4 @@ TEST_F(PageRun, RefusesPathsBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

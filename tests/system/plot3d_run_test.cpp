@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class Plot3dRun : public CommandTest {
@@ -115,4 +115,4 @@ TEST_F(Plot3dRun, ProblemsOfTheSideFileAreReportedWithTheirLines) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -14,7 +14,7 @@
 
 #include <sys/wait.h>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 
 struct Outcome {
   int status = -1;  ///< exit status, or 128 + signal as shells count
@@ -103,4 +103,4 @@ class CommandTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -5,7 +5,7 @@
 
 #include <sys/stat.h>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class RunFiles : public CommandTest {
@@ -210,4 +210,4 @@ TEST_F(RunFiles, HelpThatCannotBePrintedIsAFailureOfTheMachine) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class SequenceRun : public CommandTest {
@@ -288,4 +288,4 @@ TEST_F(SequenceRun, ProblemsAreKnownBeforeAnyWork) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ TEST_F(SilentlyWrong, MeshWithoutBoundariesGetsNoCaseFile) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

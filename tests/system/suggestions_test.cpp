@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <functional>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -245,4 +245,4 @@ TEST_F(Suggestions, NodesOfPatchesAreWrittenAsAFieldReadsThem) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

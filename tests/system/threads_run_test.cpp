@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class ThreadsRun : public CommandTest {
@@ -38,4 +38,4 @@ TEST_F(ThreadsRun, ChangeNoBitOfABladePassage) {
 TEST_F(ThreadsRun, ChangeNoBitOfAMeshOfElements) { expect_same_bits("demo ball --elements 50000", "ball_swing.cgns"); }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-namespace gridmorph::testing {
+namespace gridmorph::test {
 namespace {
 
 class UnstructuredRun : public CommandTest {
@@ -475,4 +475,4 @@ TEST_F(FoamRun, TheMeshForViewersHasTheFields) {
 }
 
 }  // namespace
-}  // namespace gridmorph::testing
+}  // namespace gridmorph::test
