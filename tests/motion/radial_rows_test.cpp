@@ -498,8 +498,7 @@ TEST(TurningWall, RatesAreDerivatives) {
 
 TEST(TurningWall, AWallAcrossTheAxisKeepsTheRadiusOfWhatSlidesOnIt) {
   RowMesh row;
-  row.add(
-      {"disc", PatchKind::wall, {31, 7}, [](double s, double t) { return test::cylindrical(0.25, 1 + s, t); }, {}});
+  row.add({"disc", PatchKind::wall, {31, 7}, [](double s, double t) { return test::cylindrical(0.25, 1 + s, t); }, {}});
   Mesh const mesh = row.finish();
   Motion motion;
   motion.rules = {{{"disc"}, SlipRule{.surface = SlipRule::Surface::revolution}, 0, ""}};
