@@ -1,4 +1,5 @@
 #include <gridmorph/geometry/affine_fit.hpp>
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 
 #include <algorithm>
@@ -9,7 +10,6 @@ namespace gridmorph {
 
 namespace {
 
-double entry(Vec3 const& v, int c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
 Vec3 column(Mat3 const& a, int c) { return {a.m[0][c], a.m[1][c], a.m[2][c]}; }
 
 }  // namespace
@@ -34,7 +34,7 @@ AffineDisplacement fit_affine(std::span<Vec3 const> points, std::span<Vec3 const
     Vec3 const d = points[n] - out.centre, u = displacement[n] - out.mean;
     spread.add(share, d);
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) moved.m[r][c] += share * entry(u, r) * entry(d, c);
+      for (int c = 0; c < 3; ++c) moved.m[r][c] += share * component(u, r) * component(d, c);
   }
   auto const [moment, direction] = PrincipalAxes(spread);
   constexpr double flat = 1e-12;  // of the variance
@@ -56,7 +56,7 @@ AffineDisplacement fit_affine(std::span<Vec3 const> points, std::span<Vec3 const
     Vec3 const slope = (1 / variance) * (moved * e);
     image[k] = e + slope;
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) out.gradient.m[r][c] += entry(slope, r) * entry(e, c);
+      for (int c = 0; c < 3; ++c) out.gradient.m[r][c] += component(slope, r) * component(e, c);
   }
   bool turns = false;
   for (auto const& row : out.gradient.m)
@@ -69,7 +69,7 @@ AffineDisplacement fit_affine(std::span<Vec3 const> points, std::span<Vec3 const
     if (double const length = norm(across); length > 0) {
       Vec3 const slope = (1 / length) * across - e;
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) out.gradient.m[r][c] += entry(slope, r) * entry(e, c);
+        for (int c = 0; c < 3; ++c) out.gradient.m[r][c] += component(slope, r) * component(e, c);
     }
   }
   return out;

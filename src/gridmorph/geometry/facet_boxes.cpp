@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/facet_boxes.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 
@@ -6,8 +7,6 @@
 
 namespace gridmorph {
 namespace {
-
-double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 int n_corners(std::array<int, 4> const& facet) { return facet[3] < 0 ? 3 : 4; }
 

@@ -1,4 +1,5 @@
 // Where a mesh is cut for a report page.
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/run/run_page.hpp>
 
@@ -16,8 +17,6 @@ namespace {
 using page::Cut;
 
 constexpr std::array names{"x", "y", "z"};
-
-double component(Vec3 const& v, int d) { return d == 0 ? v.x : d == 1 ? v.y : v.z; }
 
 Cut plane_mesh_cut(Coordinates const& at) {
   std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};

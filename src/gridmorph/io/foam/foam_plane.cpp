@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/io/foam/foam_parts.hpp>
 #include <gridmorph/io/foam/foam_plane.hpp>
 #include <gridmorph/mesh/extent.hpp>
@@ -17,8 +18,6 @@ constexpr double wedge_like = 1e-5;     // of the mesh size: points of meshes in
 constexpr double along_an_axis = 1e-4;  // of a unit vector
 
 enum Side : char { none, upper, lower, both };
-
-double component(Vec3 const& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 /// The axis of the largest component.
 int main_axis(Vec3 const& v) {

@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 
 #include <algorithm>
@@ -86,7 +87,7 @@ class OTypeMesh {
   // ---- positions
   // -------------------------------------------------------------------------------------------------------
 
-  static double along(Vec3 const& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+  static double along(Vec3 const& p, std::size_t axis) { return component(p, int(axis)); }
 
   /// Point k of the perimeter of the box, at a height along the tube's box axis.
   [[nodiscard]] Vec3 perimeter(int k, double height) const {

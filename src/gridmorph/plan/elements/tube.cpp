@@ -1,3 +1,4 @@
+#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/geometry/unit.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
@@ -9,7 +10,6 @@
 namespace gridmorph {
 namespace {
 
-double component(Vec3 const& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 Vec3 unit_vector(std::size_t axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
 
 /// Place between sections: the lower one and the fraction to the next.
@@ -160,8 +160,8 @@ class Fitter {
     tube_.axis = PrincipalAxes(spread).direction[0];
     std::size_t nearest = 2;
     for (std::size_t a = 0; a < 3; ++a)
-      if (std::abs(component(tube_.axis, a)) > std::abs(component(tube_.axis, nearest)) + 1e-9) nearest = a;
-    if (component(tube_.axis, nearest) < 0) tube_.axis = -tube_.axis;
+      if (std::abs(component(tube_.axis, int(a))) > std::abs(component(tube_.axis, int(nearest))) + 1e-9) nearest = a;
+    if (component(tube_.axis, int(nearest)) < 0) tube_.axis = -tube_.axis;
     tube_.box_axis = int(nearest);
     Vec3 const x = unit_vector((nearest + 1) % 3);
     tube_.u = unit(x - dot(x, tube_.axis) * tube_.axis);
