@@ -266,6 +266,9 @@ struct SlipSurfaceView {
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
   }
 
+  /// Whether nodes come back along the axis: then those on it do too.
+  KOKKOS_INLINE_FUNCTION bool lies_across() const { return kind == SlipKind::meridional && frame.cosine == 0; }
+
   /// Where a point of the meridional plane is relative to the profile. Kind meridional.
   KOKKOS_INLINE_FUNCTION MeridionalFoot foot(double axial, double radius) const {
     using std::sqrt;
@@ -336,8 +339,6 @@ struct SlipSurfaceView {
     Vec3 const normal_rate = turn * (f.radial * direction - f.axial * outwards) + f.radial * outwards_rate;
     return away_rate * normal + too_far * normal_rate;
   }
-  /// Whether nodes come back along the axis: then those on it do too.
-  KOKKOS_INLINE_FUNCTION bool lies_across() const { return kind == SlipKind::meridional && frame.cosine == 0; }
   KOKKOS_INLINE_FUNCTION static bool small(double v, double tolerance) { return v <= tolerance && v >= -tolerance; }
   KOKKOS_INLINE_FUNCTION bool is_own(double offset) const {
     return small(offset, baseline_deviation * (1 + 1e-6) + 1e-14 * size);

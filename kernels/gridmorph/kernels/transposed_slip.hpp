@@ -55,7 +55,7 @@ KOKKOS_INLINE_FUNCTION Vec3 slip_gradient(SlipSurfaceView const& s, Vec3 const& 
   double const a = dot(d, n), du = dot(u, n);
   Vec3 const moved = (d - a * n) + (u - du * n);
   double const r = norm(moved);
-  if (!(r > 0)) return s.kind == SlipKind::meridional && s.frame.cosine == 0 ? g - dot(n, g) * n : g;
+  if (!(r > 0)) return s.lies_across() ? g - dot(n, g) * n : g;
   Vec3 const outwards = (1 / r) * moved;
   if (s.kind == SlipKind::meridional) return meridional_gradient(s, a + du, r, outwards, own, g);
   ProfileSample const wall = s.profile.sample(a + du);
