@@ -194,6 +194,27 @@ TEST(ShockCells, ConservedVariablesGiveThePressureAndTheVelocityThatPrimitiveOne
               find_shock(mesh, primitive, search_for(sensor, sensor == Sensor::jump ? 0.2 : 1), all(mesh)).cells);
 }
 
+TEST(ShockCells, APlaneMeshNeedsNoVelocityAcrossItWhicheverAxisThatIs) {
+  for (int const across : {0, 1, 2}) {
+    Mesh mesh = flat_box(24, 8, 0);
+    std::array const arrays{mesh.coordinates.x, mesh.coordinates.y, mesh.coordinates.z};
+    auto const turned = [&](int axis) { return arrays[std::size_t(axis - across + 5) % 3]; };
+    mesh.coordinates.x = turned(0);
+    mesh.coordinates.y = turned(1);
+    mesh.coordinates.z = turned(2);
+    Vec3 const normal{across == 2 ? 1.0 : 0.0, across == 0 ? 1.0 : 0.0, across == 1 ? 1.0 : 0.0};
+    NormalShock const shock{.through = 12 * normal, .normal = normal, .width = 2};
+    FlowSolution solution = solution_of(mesh, shock);
+    auto const cells = [&] { return find_shock(mesh, solution, search_for(Sensor::normal_mach, 1), all(mesh)).cells; };
+    auto const with_all = cells();
+    EXPECT_GT(count(with_all), 0);
+    solution.values.erase(std::string("Velocity") + char('X' + across));
+    EXPECT_EQ(cells(), with_all) << across;
+    solution.values.erase(std::string("Velocity") + char('X' + (across + 1) % 3));
+    expect_all_in(message_of<MotionError>(cells), {"no VelocityX"});
+  }
+}
+
 TEST(ShockCells, SmallGroupsAreDroppedAndLayersGrowFromTheOthers) {
   Mesh const mesh = box({17, 9, 7}, Shape::straight, 1);
   FlowSolution solution = solution_of(mesh, {});

@@ -5,6 +5,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,7 +17,9 @@ using Values = std::vector<double>;
 
 class FlowVariables {
  public:
-  FlowVariables(FlowSolution const& solution, double heat_ratio) : solution_(solution), gamma_(heat_ratio) {}
+  /// dimension: of the mesh.
+  FlowVariables(FlowSolution const& solution, double heat_ratio, int dimension)
+      : solution_(solution), gamma_(heat_ratio), plane_(dimension == 2) {}
 
   [[nodiscard]] Values pressure() const {
     if (auto const* p = solution_.find("Pressure")) return *p;
@@ -30,7 +33,7 @@ class FlowVariables {
     return out;
   }
 
-  /// The components of the velocity; that along z is zero in a solution in two dimensions.
+  /// The components of the velocity; the one that a solution in two dimensions lacks is zero.
   [[nodiscard]] std::array<Values, 3> velocity() const {
     std::array<Values, 3> out;
     bool const own = has_velocity();
@@ -39,15 +42,14 @@ class FlowVariables {
     for (std::size_t c = 0; c < 3; ++c) {
       std::string const component = (own ? "Velocity" : "Momentum") + std::string(1, char('X' + int(c)));
       auto const* found = solution_.find(component);
-      if (found == nullptr) {
-        out[c].assign(out[0].size(), 0);
-        continue;
-      }
+      if (found == nullptr) continue;
       out[c] = *found;
       if (own) continue;
       Values const& rho = *solution_.find("Density");
       for (std::size_t n = 0; n < rho.size(); ++n) out[c][n] /= rho[n];
     }
+    auto const size = std::max({out[0].size(), out[1].size(), out[2].size()});
+    for (Values& of_axis : out) of_axis.resize(size, 0);
     return out;
   }
 
@@ -68,8 +70,13 @@ class FlowVariables {
   }
 
  private:
-  [[nodiscard]] bool has_velocity() const { return solution_.has({"VelocityX", "VelocityY"}); }
-  [[nodiscard]] bool has_momentum() const { return solution_.has({"Density", "MomentumX", "MomentumY"}); }
+  [[nodiscard]] bool has_velocity() const { return has_components("Velocity"); }
+  [[nodiscard]] bool has_momentum() const { return solution_.has({"Density"}) && has_components("Momentum"); }
+  /// Those along x and y; of a plane mesh, which may lie across any axis, any two.
+  [[nodiscard]] bool has_components(std::string const& of) const {
+    auto const has = [&](char axis) { return solution_.find(of + axis) != nullptr; };
+    return (has('X') && has('Y')) || (plane_ && has('Z') && (has('X') || has('Y')));
+  }
 
   [[noreturn]] void lacks(std::string const& what) const {
     throw MotionError(solution_.source + " has no " + what + "; it has " + quote_list(solution_.available) +
@@ -78,6 +85,7 @@ class FlowVariables {
 
   FlowSolution const& solution_;
   double gamma_;
+  bool plane_;
 };
 
 /// The mean of the cells around each place; nodes of no cell: 0.
@@ -140,7 +148,7 @@ void CellCorners::each(std::function<void(Index, std::span<Index const>)> const&
 }
 
 FlowAtNodes flow_at_nodes(CellCorners const& cells, FlowSolution const& solution, ShockSearch const& search) {
-  FlowVariables const variables(solution, search.heat_ratio);
+  FlowVariables const variables(solution, search.heat_ratio, cells.dimension());
   auto const at_nodes = [&](Values values) {
     return solution.at_nodes ? std::move(values) : mean_at_nodes(cells, values);
   };

@@ -21,6 +21,8 @@ class CellCorners {
   explicit CellCorners(Mesh const& mesh);
 
   [[nodiscard]] Index size() const { return n_; }
+  /// Of the cells in the file.
+  [[nodiscard]] int dimension() const { return mesh_.dimension; }
   /// Calls look(cell, corner nodes) for every cell in order.
   void each(std::function<void(Index, std::span<Index const>)> const& look) const;
   /// The smallest number among the nodes at one place, across interfaces and connections that are not periodic.
