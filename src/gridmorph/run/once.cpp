@@ -43,12 +43,11 @@ RunFiles stage_files(std::filesystem::path const& folder, MeshSource const& file
 /// Throws ConfigError when an output or the report cannot be written where it should.
 void check_outputs(CaseFile const& case_file, MeshSource const& file) {
   auto const& options = case_file.output_options;
-  RunFiles outputs = outputs_of(case_file.output, options.report);
+  RunFiles outputs = outputs_of({{"output", case_file.output}}, options);
   if (options.stages) {
     auto const stages = stage_files(*options.stages, file, outputs);
     outputs.insert(outputs.end(), stages.begin(), stages.end());
   }
-  if (options.page) outputs.push_back({"page", *options.page});
   if (options.vtk) outputs.push_back({"VTK file", *options.vtk});
   check_run_files(inputs_of(case_file, file), outputs);
 }

@@ -75,10 +75,10 @@ RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh) {
   return files;
 }
 
-RunFiles outputs_of(fs::path const& output, std::optional<fs::path> const& report) {
-  RunFiles files{{"output", output}};
-  if (report) files.push_back({"report", *report});
-  return files;
+RunFiles outputs_of(RunFiles meshes, OutputOptions const& options) {
+  if (options.report) meshes.push_back({"report", *options.report});
+  if (options.page) meshes.push_back({"page", *options.page});
+  return meshes;
 }
 
 namespace {

@@ -26,8 +26,8 @@ RunFiles inputs_of_mesh(MeshSource const& mesh, std::optional<std::filesystem::p
 /// The case file, its mesh, and every file that it names to be read.
 RunFiles inputs_of(CaseFile const& case_file, MeshSource const& mesh);
 
-/// A mesh and, where there is one, the report of the run that writes it.
-RunFiles outputs_of(std::filesystem::path const& output, std::optional<std::filesystem::path> const& report);
+/// The meshes that a run writes and, where they are asked for, its report and page.
+RunFiles outputs_of(RunFiles meshes, OutputOptions const& options);
 
 /// Throws one ConfigError for all outputs that cannot be: in a folder that does not exist; a folder, device or pipe; an
 /// input, another file that has been read (io::FilesRead) or another output, by whatever name (io::identity_of); or

@@ -126,13 +126,11 @@ void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
         "\"step_{{step}}{}\" in [sequence]",
         case_file.source.string(), case_file.input.string(), to_string(file.format),
         case_file.input.extension().string()));
-  RunFiles outputs;
-  for (int step = 0; step < files; ++step) outputs.push_back({"output", step_path(options, step)});
+  RunFiles meshes;
+  for (int step = 0; step < files; ++step) meshes.push_back({"output", step_path(options, step)});
   if (!one_file_per_step(options))
-    for (int step = 0; step < options.steps; ++step) outputs.front().times.push_back(options.time_at(step));
-  if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});
-  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
-  check_run_files(inputs_of(case_file, file), outputs);
+    for (int step = 0; step < options.steps; ++step) meshes.front().times.push_back(options.time_at(step));
+  check_run_files(inputs_of(case_file, file), outputs_of(std::move(meshes), case_file.output_options));
 }
 
 /// Which of two steps is the worse one.

@@ -75,10 +75,9 @@ class WheelOnce {
 }  // namespace
 
 int wheel_once(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
-  RunFiles outputs = outputs_of(case_file.wheel->output, case_file.output_options.report);
-  outputs.front().what = "wheel";  // CGNS, whatever the sector is
-  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
-  check_run_files(inputs_of(case_file, file), outputs);
+  // No "output": it is CGNS, whatever the sector is.
+  check_run_files(inputs_of(case_file, file),
+                  outputs_of({{"wheel", case_file.wheel->output}}, case_file.output_options));
   return WheelOnce(case_file, console, typed)();
 }
 

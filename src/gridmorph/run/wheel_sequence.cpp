@@ -101,7 +101,6 @@ class WheelSequence {
     files_.emplace(options_, run_.wheel().mesh);
     if (files_->wants_baseline()) files_->write_baseline([&](ZoneSink const& sink) { run_.make_baseline(sink); });
     for (int step = 0; step < options_.steps; ++step) make_step(step);
-    worst_ = worst_step(steps_);
   }
 
   void make_step(int step) {
@@ -114,7 +113,9 @@ class WheelSequence {
     run_.time("write");
     inverted_ = inverted_ || any_inverted(made);
     steps_.push_back(wheel_step(options_.time_at(step), made));
-    if (worst_step(steps_) + 1 == steps_.size()) worst_made_ = std::move(made);
+    if (step > 0 && !steps_.back().worse_than(steps_[worst_])) return;
+    worst_ = steps_.size() - 1;
+    worst_made_ = std::move(made);
   }
 
   [[nodiscard]] nlohmann::json json() const {
@@ -181,12 +182,10 @@ class WheelSequence {
 int wheel_sequence(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed) {
   SequenceOptions options = *case_file.sequence;
   options.output = case_file.wheel->output;
-  RunFiles outputs;
+  RunFiles wheels;
   for (int step = 0; step < (one_file_per_step(options) ? options.steps : 1); ++step)
-    outputs.push_back({"wheel", step_path(options, step)});
-  if (auto const& report = case_file.output_options.report) outputs.push_back({"report", *report});
-  if (auto const& page = case_file.output_options.page) outputs.push_back({"page", *page});
-  check_run_files(inputs_of(case_file, file), outputs);
+    wheels.push_back({"wheel", step_path(options, step)});
+  check_run_files(inputs_of(case_file, file), outputs_of(std::move(wheels), case_file.output_options));
   return WheelSequence(case_file, std::move(options), console, typed)();
 }
 

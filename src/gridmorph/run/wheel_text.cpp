@@ -168,7 +168,7 @@ Index WheelStep::newly_inverted() const {
 std::size_t worst_step(std::vector<WheelStep> const& steps) {
   std::size_t worst = 0;
   for (std::size_t s = 1; s < steps.size(); ++s)
-    if (steps[s].passages[steps[s].worst].worse_than(steps[worst].passages[steps[worst].worst])) worst = s;
+    if (steps[s].worse_than(steps[worst])) worst = s;
   return worst;
 }
 

@@ -76,6 +76,10 @@ struct WheelStep {
   [[nodiscard]] double largest_displacement() const;
   /// Cells of all passages.
   [[nodiscard]] Index newly_inverted() const;
+  /// By the worst passages.
+  [[nodiscard]] bool worse_than(WheelStep const& other) const {
+    return passages[worst].worse_than(other.passages[other.worst]);
+  }
 };
 WheelStep wheel_step(double time, WheelMade const& made);
 /// Number of the worst step.
