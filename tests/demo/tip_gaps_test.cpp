@@ -222,7 +222,7 @@ TEST_P(TipGaps, SidesFollowTheBladeToItsTipAndShareTheGapAbove) {
   }
   EXPECT_GT(below, 50);
   EXPECT_GT(above, 20);
-  EXPECT_TRUE(trims(out.mesh, out.plan(), out.prepared.planned.boundary, out.prepared.surface, out.boundary).empty());
+  EXPECT_TRUE(trims(out.plan(), out.prepared.planned.boundary, out.prepared.surface, out.boundary).empty());
 }
 
 TEST_P(TipGaps, ByDefaultAllMovingWallsGetANearFieldButThoseAtTheGap) {

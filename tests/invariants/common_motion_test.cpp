@@ -229,8 +229,7 @@ TEST(CommonMotionOfParts, HasRatesThatAreItsSlope) {
     ASSERT_EQ(prepared.plan().common.size(), 1U) << name;
     using Exec = Kokkos::DefaultHostExecutionSpace;
     auto const given = [&](double t) {
-      return evaluate(prepared.mesh, prepared.planned.boundary, prepared.surface.with(motion_at(t)),
-                      prepared.plan().rotations);
+      return evaluate(prepared.planned.boundary, prepared.surface.with(motion_at(t)), prepared.plan().rotations);
     };
     auto const displacements = [&](double t) { return run_plan(Exec(), mesh, prepared.plan(), given(t)).displacement; };
     double const h = 1e-5;

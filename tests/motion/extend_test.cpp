@@ -195,7 +195,7 @@ TEST(Extend, NothingDependsOnHowZonesAreStoredOrWhetherTheyAreHexahedra) {
   Mesh const elements = to_hexahedra(mesh);
   UnstructuredTopology const topology = make_topology(elements);
   auto const boundary = std::make_shared<Boundary const>(elements, topology, find_face_patches(elements, topology));
-  BoundaryMotion const same(boundary, resolve(boundary->mesh(), m));
+  BoundaryMotion const same(boundary, resolve(boundary->names(), m));
   for (auto const& [patch, r] : {std::pair("blade", 0), std::pair("hub", 1)})
     for (auto const& [n, u] : displacements(same, patch, r)) EXPECT_LE(distance(u, expected.at(n)), 1e-12);
 }
@@ -214,7 +214,7 @@ TEST(Extend, WhatCannotBeIsRefused) {
   UnstructuredTopology const topology = make_topology(triangles);
   auto const boundary = std::make_shared<Boundary const>(triangles, topology, find_face_patches(triangles, topology));
   expect_all_in(message_of<MotionError>([&] {
-                  BoundaryMotion(boundary, resolve(boundary->mesh(), lifted([](Vec3 const&) { return Vec3{}; })));
+                  BoundaryMotion(boundary, resolve(boundary->names(), lifted([](Vec3 const&) { return Vec3{}; })));
                 }),
                 {"do not stand in rows", "free"});
 }

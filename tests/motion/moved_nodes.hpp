@@ -47,7 +47,7 @@ struct MovedNode {
 inline std::vector<MovedNode> moved_nodes(Mesh const& mesh, Motion const& motion,
                                           std::vector<std::string>* notes = nullptr) {
   auto const boundary = boundary_of(mesh);
-  ResolvedMotion const resolved = resolve(boundary->mesh(), motion);
+  ResolvedMotion const resolved = resolve(boundary->names(), motion);
   BoundaryMotion const moves(boundary, resolved);
   EXPECT_TRUE(moves.is_explicit(0));
   if (notes != nullptr) *notes = moves.notes();

@@ -63,7 +63,7 @@ std::vector<ByRule> displacements(BoundaryMotion const& motion, Mesh const& plan
 BoundaryMotion motion_in_plane(Mesh const& mesh, Rule const& of_the_blade, Axis const& axis) {
   UnstructuredCase const with(mesh);
   auto const boundary = std::make_shared<Boundary const>(with.mesh, with.topology, with.face_patches);
-  return {boundary, resolve(boundary->mesh(), plane_rules(of_the_blade, axis))};
+  return {boundary, resolve(boundary->names(), plane_rules(of_the_blade, axis))};
 }
 
 std::vector<ByRule> in_plane(Mesh const& mesh, Rule const& of_the_blade, Axis const& axis = about_z) {
@@ -100,7 +100,7 @@ TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
 void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, Mesh const& plane,
                               std::vector<ByRule> const& wanted, Axis const& axis) {
   BoundaryMotion const motion{std::make_shared<Boundary const>(boundary),
-                              resolve(boundary.mesh(), plane_rules(plane_redesign(), axis))};
+                              resolve(boundary.names(), plane_rules(plane_redesign(), axis))};
   auto const u = displacements(motion, plane);
   double largest = 0, apart = 0;
   for (int const r : {blade_rule, ends_rule, sides_rule}) {

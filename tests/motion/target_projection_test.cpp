@@ -408,7 +408,7 @@ TEST(TargetProjection, RimsOfHolesGoToThoseOfTheTarget) {
     auto const boundary =
         blocks ? std::make_shared<Boundary const>(mesh)
                : std::make_shared<Boundary const>(elements, topology, find_face_patches(elements, topology));
-    std::vector<int> const patches = select_patches(boundary->mesh(), {"plate"});
+    std::vector<int> const patches = boundary->select_patches({"plate"});
     PatchSurface const surface(*boundary, patches);
     TargetGeometry target;
     for (Vec3 const& x : surface.points) target.points.push_back(swept(x));
@@ -418,7 +418,7 @@ TEST(TargetProjection, RimsOfHolesGoToThoseOfTheTarget) {
     }
     Motion motion;
     motion.rules = {{{"plate"}, rule_of(target), 0, "test"}};
-    BoundaryMotion const moves(boundary, resolve(boundary->mesh(), motion));
+    BoundaryMotion const moves(boundary, resolve(boundary->names(), motion));
     std::vector<Vec3> u(surface.points.size());
     moves.displacement(0, surface.points, u);
     auto const is_side = [&](Vec3 const& x) { return x.x < 1e-9 || x.x > 16 - 1e-9 || x.y < 1e-9 || x.y > 10 - 1e-9; };

@@ -116,7 +116,9 @@ bool holds(InnerRegion const& of, Vec3 const& at) {
   m.regions = {of};
   std::vector<std::string> notes;
   auto const boundary = std::make_shared<Boundary const>(mesh);
-  return locate_wakes(boundary, resolve(mesh, without_regions(mesh, m)), {&of, 1}, notes).front().holds(at);
+  return locate_wakes(boundary, resolve(mesh, without_regions(NamedBoundary(mesh), m)), {&of, 1}, notes)
+      .front()
+      .holds(at);
 }
 
 TEST(WakeRegion, IsABandBehindTheTrailingEdge) {

@@ -7,6 +7,7 @@
 #include <gridmorph/mesh/unstructured_topology.hpp>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,16 +51,19 @@ class Boundary {
   [[nodiscard]] int zone_of(Index node) const { return mesh_.zone_of(node); }
   /// connections_of() the mesh.
   [[nodiscard]] std::vector<AnyConnection> connections() const { return connections_of(mesh_); }
-  /// Numbers of the patches that selectors name; see gridmorph::select_patches().
+  /// The patches and connections as rules name them.
+  [[nodiscard]] NamedBoundary names() const { return NamedBoundary(mesh_); }
+  /// What a selector names, and the numbers of the patches that several name; see the functions of these names in
+  /// boundary/selectors.hpp.
+  [[nodiscard]] Selection select(std::string const& selector) const { return gridmorph::select(mesh_, selector); }
   [[nodiscard]] std::vector<int> select_patches(std::vector<std::string> const& selectors) const {
     return gridmorph::select_patches(mesh_, selectors);
   }
-  /// The name of a patch in messages.
-  [[nodiscard]] std::string describe_patch(int patch) const {
-    return gridmorph::describe_patch(mesh_, mesh_.patches[std::size_t(patch)]);
-  }
-  /// All of these, for functions that take meshes without a boundary too.
-  [[nodiscard]] BoundaryMesh const& mesh() const { return mesh_; }
+  /// The names of a patch and of a node in messages.
+  [[nodiscard]] std::string describe_patch(int patch) const { return names().describe_patch(patch); }
+  [[nodiscard]] std::string describe_node(Index node) const { return gridmorph::describe_node(mesh_, node); }
+  /// The dimension of the cells in the file (BoundaryMesh::dimension).
+  [[nodiscard]] int dimension() const { return mesh_.dimension; }
   /// The size of the mesh (Mesh::size()).
   [[nodiscard]] double size() const { return size_; }
   /// The precision of the coordinates of the mesh: that of its coarsest zone.
@@ -79,6 +83,8 @@ class Boundary {
   /// Whether two patches have nodes of one zone in common.
   [[nodiscard]] bool share_nodes(int patch, int other) const;
 
+  /// (nodes of the mesh) 1 where a periodic connection of elements pairs them.
+  [[nodiscard]] std::vector<std::uint8_t> periodic_nodes() const { return gridmorph::periodic_nodes(mesh_); }
   /// Pairs of nodes (own, donor) of a connection, by its number in connections_of().
   [[nodiscard]] std::vector<std::array<Index, 2>> pairs(int connection) const;
   /// Whether a connection has nodes of a patch, on either side.

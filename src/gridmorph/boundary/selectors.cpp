@@ -176,6 +176,48 @@ std::string describe_interface(BoundaryMesh const& mesh, AnyConnection const& i)
   return "'" + i.name + "' (zone '" + mesh.zones[i.zone].name + "' to zone '" + mesh.zones[i.donor_zone].name + "')";
 }
 
+namespace {
+
+/// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
+/// only if there is no other.
+int find_partner(BoundaryMesh const& mesh, int interface) {
+  Interface1to1 const& own = mesh.interfaces[std::size_t(interface)];
+  IndexRange const donor = own.to_donor(own.range);
+  for (std::size_t j = 0; j < mesh.interfaces.size(); ++j) {
+    Interface1to1 const& other = mesh.interfaces[j];
+    if (int(j) != interface && other.zone == own.donor_zone && other.donor_zone == own.zone && other.range == donor &&
+        other.to_donor(other.range) == own.range)
+      return int(j);
+  }
+  return -1;
+}
+
+/// The other side of a connection of elements that the file stores twice, or -1; sides may list their nodes in any
+/// order.
+int find_partner(std::vector<Connection> const& connections, int connection) {
+  Connection const& own = connections[std::size_t(connection)];
+  auto const sorted = [](std::vector<Index32> list) {
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  for (std::size_t j = 0; j < connections.size(); ++j) {
+    Connection const& other = connections[j];
+    if (int(j) != connection && other.zone == own.donor_zone && other.donor_zone == own.zone && other.periodic &&
+        other.nodes.size() == own.nodes.size() && sorted(own.donor_nodes) == sorted(other.nodes))
+      return int(j);
+  }
+  return -1;
+}
+
+}  // namespace
+
+int NamedBoundary::other_side(int connection) const {
+  auto const blocks = int(mesh_->interfaces.size());
+  if (connection < blocks) return find_partner(*mesh_, connection);
+  int const other = find_partner(mesh_->connections, connection - blocks);
+  return other < 0 ? -1 : blocks + other;
+}
+
 std::vector<int> select_patches(BoundaryMesh const& mesh, std::vector<std::string> const& selectors) {
   Problems problems;
   std::set<int> chosen;

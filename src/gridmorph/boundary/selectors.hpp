@@ -55,4 +55,33 @@ std::string quote_list(std::vector<std::string> const& names, std::size_t at_mos
 /// Family name if there is one, otherwise the connection's own name: how users know it.
 std::string describe_interface(BoundaryMesh const& mesh, AnyConnection const& interface);
 
+/// The patches and connections of a mesh, which must outlive it, as rules name them: by what they are called and what
+/// kind they are of, wherever their nodes may be.
+class NamedBoundary {
+ public:
+  explicit NamedBoundary(BoundaryMesh const& mesh) : mesh_(&mesh) {}
+
+  [[nodiscard]] std::vector<Patch> const& patches() const { return mesh_->patches; }
+  [[nodiscard]] std::vector<AnyConnection> connections() const { return connections_of(*mesh_); }
+  /// The functions of these names above.
+  [[nodiscard]] Selection select(std::string const& selector) const { return gridmorph::select(*mesh_, selector); }
+  [[nodiscard]] std::vector<int> select_patches(std::vector<std::string> const& selectors) const {
+    return gridmorph::select_patches(*mesh_, selectors);
+  }
+  [[nodiscard]] std::string matches_nothing(std::string const& selector) const {
+    return gridmorph::matches_nothing(*mesh_, selector);
+  }
+  [[nodiscard]] std::string describe_patch(int patch) const {
+    return gridmorph::describe_patch(*mesh_, mesh_->patches[std::size_t(patch)]);
+  }
+  [[nodiscard]] std::string describe_interface(AnyConnection const& interface) const {
+    return gridmorph::describe_interface(*mesh_, interface);
+  }
+  /// The other side of a connection that the file stores twice, by their numbers, or -1.
+  [[nodiscard]] int other_side(int connection) const;
+
+ private:
+  BoundaryMesh const* mesh_;
+};
+
 }  // namespace gridmorph

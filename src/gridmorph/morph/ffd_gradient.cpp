@@ -18,7 +18,6 @@ constexpr char const* who_ffd = "gridmorph::ffd_gradient";
 
 /// A plan as rules see it.
 struct Asked {
-  BoundaryMesh const& mesh;
   BoundaryRequests const& boundary;
   BoundaryMotion const& motion;
   std::vector<Mat3> const& rotations;
@@ -27,9 +26,9 @@ struct Asked {
 Asked asked_by(MorphPlan const& plan) {
   static std::vector<Mat3> const none;
   if (auto const* blocks = PlanAccess::blocks(plan))
-    return {blocks->mesh, blocks->planned.boundary, blocks->surface, blocks->plan().rotations};
+    return {blocks->planned.boundary, blocks->surface, blocks->plan().rotations};
   auto const& boundary = PlanAccess::elements(plan)->boundary;
-  return {boundary.motion->boundary().mesh(), boundary.requests, *boundary.motion, none};
+  return {boundary.requests, *boundary.motion, none};
 }
 
 /// Gradients of the nodes that take no displacement from a lattice of their own, and may go along with one.
@@ -89,13 +88,13 @@ std::vector<Vec3> ffd_gradient(MorphPlan const& plan, int rule, std::span<Vec3 c
   bool const alone = asked.motion.alone(rule);
   std::vector<Vec3> out(ffd->size()), left(dJ_db.size());
   bool any_left = false;
-  std::vector<Index> const given_by = deciding_requests(asked.mesh, asked.boundary, asked.motion);
+  std::vector<Index> const given_by = deciding_requests(asked.boundary, asked.motion);
   for (std::size_t m = 0; m < dJ_db.size(); ++m) {
     if (given_by[m] < 0) continue;
     auto const& request = asked.boundary.requests[std::size_t(given_by[m])];
     if (request.rule == rule && alone) {
       Vec3 const g = request.rotation < 0 ? dJ_db[m] : asked.rotations[std::size_t(request.rotation)] * dJ_db[m];
-      lattice.add_gradient(asked.mesh.coordinates[request.node], g, out);
+      lattice.add_gradient(asked.motion.boundary().coordinates()[request.node], g, out);
     } else if (request.rule == rule || goes_along(resolved.rules[std::size_t(request.rule)].rule)) {
       left[m] = dJ_db[m];
       any_left = any_left || !(dJ_db[m] == Vec3{});

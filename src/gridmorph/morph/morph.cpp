@@ -58,7 +58,7 @@ std::vector<Vec3> const& MorphPlan::State::displacement_by_rules() const {
 
 std::vector<Vec3> MorphPlan::State::evaluated(Motion const& motion) const {
   if (elements) return evaluate(elements->boundary, motion);
-  return evaluate(blocks->mesh, blocks->planned.boundary, blocks->surface.with(motion), blocks->plan().rotations);
+  return evaluate(blocks->planned.boundary, blocks->surface.with(motion), blocks->plan().rotations);
 }
 
 /// Nothing where the motion cannot be made, which is said by who asks for it.
@@ -258,13 +258,13 @@ NearCells MorphPlan::near_cells() const {
 std::vector<Trim> MorphPlan::trims(std::vector<Vec3> const& boundary) const {
   if (state_->elements) return gridmorph::trims(state_->elements->boundary, boundary);
   PreparedMorph const& blocks = *state_->blocks;
-  return gridmorph::trims(blocks.mesh, blocks.plan(), blocks.planned.boundary, blocks.surface, boundary);
+  return gridmorph::trims(blocks.plan(), blocks.planned.boundary, blocks.surface, boundary);
 }
 
 std::vector<Trim> MorphPlan::trims(std::vector<Vec3> const& boundary, Motion const& motion) const {
   if (state_->elements) return gridmorph::trims(state_->elements->boundary, boundary);
   PreparedMorph const& blocks = *state_->blocks;
-  return gridmorph::trims(blocks.mesh, blocks.plan(), blocks.planned.boundary, blocks.surface.with(motion), boundary);
+  return gridmorph::trims(blocks.plan(), blocks.planned.boundary, blocks.surface.with(motion), boundary);
 }
 
 std::vector<PlanSeconds> MorphPlan::seconds() const {

@@ -20,18 +20,17 @@ namespace {
 /// against what the connection says: those that no rule names get the rule `free` instead, after all others.
 Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vector<std::string>& notes) {
   if (motion.strict) return motion;
-  BoundaryMesh const& mesh = boundary.mesh();
   std::vector<std::uint8_t> named(boundary.patches().size(), 0);
   for (auto const& rule : motion.rules)
     for (auto const& selector : rule.patches) {
       if (selector == "type:periodic") continue;
       try {
-        for (int const p : select(mesh, selector).patches) named[std::size_t(p)] = 1;
+        for (int const p : boundary.select(selector).patches) named[std::size_t(p)] = 1;
       } catch (MotionError const&) {
         return motion;  // resolve() says what is wrong, with all other problems
       }
     }
-  std::vector<std::uint8_t> const paired = periodic_nodes(mesh);
+  std::vector<std::uint8_t> const paired = boundary.periodic_nodes();
   std::vector<std::string> free;
   for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
     auto const& nodes = boundary.surface(int(p)).nodes;
@@ -59,8 +58,11 @@ bool fits_connections(Rule const& rule) {
 class RulesOfConnections {
  public:
   RulesOfConnections(Boundary const& boundary, ResolvedMotion& motion)
-      : boundary_(boundary), mesh_(boundary.mesh()), motion_(motion), is_side_(boundary_.patches().size(), 0) {
-    std::vector<std::uint8_t> const paired = periodic_nodes(mesh_);
+      : boundary_(boundary),
+        connections_(boundary.connections()),
+        motion_(motion),
+        is_side_(boundary_.patches().size(), 0) {
+    std::vector<std::uint8_t> const paired = boundary_.periodic_nodes();
     for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       auto const& nodes = boundary_.surface(int(p)).nodes;
       is_side_[p] =
@@ -72,9 +74,9 @@ class RulesOfConnections {
   }
 
   void give() {
-    auto const free = detail::free_by_default(mesh_, motion_);
+    auto const free = detail::free_by_default(connections_, motion_);
     give_to_connections();
-    auto const left = detail::free_by_default(mesh_, motion_);
+    auto const left = detail::free_by_default(connections_, motion_);
     if (left == free) return;
     auto const note = [](std::vector<std::string> const& names) {
       return detail::default_note(detail::periodics, names, detail::move_as_one);
@@ -97,32 +99,43 @@ class RulesOfConnections {
       nodes_of[own.rule].insert(nodes.begin(), nodes.end());
     }
     if (nodes_of.empty()) return;
-    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
-      Connection const& connection = mesh_.connections[c];
-      if (connection.nodes.empty() || !is_left(c)) continue;
+    for (AnyConnection const& c : connections_) {
+      if (!is_left(c.number)) continue;
+      Sides const sides = sides_of(c.number);
+      if (sides.own.empty()) continue;
       std::vector<int> rules;
       for (auto const& [rule, nodes] : nodes_of)
-        if (covers(nodes, connection.nodes) || covers(nodes, connection.donor_nodes)) rules.push_back(rule);
+        if (covers(nodes, sides.own) || covers(nodes, sides.donor)) rules.push_back(rule);
       if (rules.size() != 1) continue;
-      give(c, rules.front());
+      give(c.number, sides, rules.front());
     }
     give_to_halos();
     let_patches_go();
   }
 
-  template <class List>
-  [[nodiscard]] static bool covers(std::set<Index> const& nodes, List const& list) {
-    return std::all_of(list.begin(), list.end(), [&](auto n) { return nodes.contains(Index(n)); });
+  /// The nodes of a connection.
+  struct Sides {
+    std::vector<Index> own, donor;
+  };
+  [[nodiscard]] Sides sides_of(int c) const {
+    Sides out;
+    for (auto const& [own, donor] : boundary_.pairs(c)) {
+      out.own.push_back(own);
+      out.donor.push_back(donor);
+    }
+    return out;
+  }
+  [[nodiscard]] static bool covers(std::set<Index> const& nodes, std::vector<Index> const& list) {
+    return std::all_of(list.begin(), list.end(), [&](Index n) { return nodes.contains(n); });
   }
 
   /// Whether a connection is periodic and no rule names it, not even `free`.
-  [[nodiscard]] bool is_left(std::size_t c) const { return motion_.interface[mesh_.interfaces.size() + c].by_default; }
+  [[nodiscard]] bool is_left(int c) const { return motion_.interface[std::size_t(c)].by_default; }
 
-  void give(std::size_t c, int rule) {
-    Connection const& connection = mesh_.connections[c];
-    motion_.interface[mesh_.interfaces.size() + c] = {rule, false};
-    held_[rule].insert(connection.nodes.begin(), connection.nodes.end());
-    held_[rule].insert(connection.donor_nodes.begin(), connection.donor_nodes.end());
+  void give(int c, Sides const& sides, int rule) {
+    motion_.interface[std::size_t(c)] = {rule, false};
+    held_[rule].insert(sides.own.begin(), sides.own.end());
+    held_[rule].insert(sides.donor.begin(), sides.donor.end());
     given_.push_back({c, rule});
   }
 
@@ -133,21 +146,20 @@ class RulesOfConnections {
     for (std::size_t p = 0; p < is_side_.size(); ++p)
       if (is_side_[p] != 0)
         of_sides.insert(boundary_.surface(int(p)).nodes.begin(), boundary_.surface(int(p)).nodes.end());
-    auto const first = mesh_.interfaces.size();
-    auto const sides = given_;
-    for (std::size_t c = 0; c < mesh_.connections.size(); ++c) {
-      Connection const& connection = mesh_.connections[c];
-      if (connection.nodes.empty() || !is_left(c)) continue;
-      auto const is_free = [&](Index32 n) { return !of_sides.contains(Index(n)); };
-      if (!std::all_of(connection.nodes.begin(), connection.nodes.end(), is_free) ||
-          !std::all_of(connection.donor_nodes.begin(), connection.donor_nodes.end(), is_free))
+    auto const given = given_;
+    for (AnyConnection const& c : connections_) {
+      if (!is_left(c.number)) continue;
+      Sides const sides = sides_of(c.number);
+      auto const is_free = [&](Index n) { return !of_sides.contains(n); };
+      if (sides.own.empty() || !std::all_of(sides.own.begin(), sides.own.end(), is_free) ||
+          !std::all_of(sides.donor.begin(), sides.donor.end(), is_free))
         continue;
-      RigidTransform const own = boundary_.transform(int(first + c));
-      auto const side = std::find_if(sides.begin(), sides.end(), [&](auto const& s) {
-        RigidTransform const other = boundary_.transform(int(first + s.first));
+      RigidTransform const own = boundary_.transform(c.number);
+      auto const alike = std::find_if(given.begin(), given.end(), [&](auto const& g) {
+        RigidTransform const other = boundary_.transform(g.first);
         return are_alike(own, other, boundary_.size()) || are_alike(own, other.inverse(), boundary_.size());
       });
-      if (side != sides.end()) give(c, side->second);
+      if (alike != given.end()) give(c.number, sides, alike->second);
     }
   }
 
@@ -175,16 +187,16 @@ class RulesOfConnections {
   }
 
   Boundary const& boundary_;
-  BoundaryMesh const& mesh_;
+  std::vector<AnyConnection> connections_;
   ResolvedMotion& motion_;
   std::vector<std::uint8_t> is_side_;
-  std::vector<std::pair<std::size_t, int>> given_;  ///< connections and the rules that they have from patches
-  std::map<int, std::set<Index>> held_;             ///< nodes of connections by the rule they have from a patch
+  std::vector<std::pair<int, int>> given_;  ///< connections and the rules that they have from patches
+  std::map<int, std::set<Index>> held_;     ///< nodes of connections by the rule they have from a patch
 };
 
 /// The rules of a mesh of elements.
 ResolvedMotion resolve_on(Boundary const& boundary, Motion const& motion, std::vector<std::string>& notes) {
-  ResolvedMotion out = resolve(boundary.mesh(), with_periodic_patches(boundary, motion, notes));
+  ResolvedMotion out = resolve(boundary.names(), with_periodic_patches(boundary, motion, notes));
   RulesOfConnections(boundary, out).give();
   return out;
 }
@@ -220,7 +232,7 @@ class Finder {
     if (!have_wakes(motion.regions)) return motion.regions;
     auto const boundary = std::make_shared<Boundary const>(mesh_, topology_, face_patches_, size_);
     std::vector<std::string> notes;  // those of the rules come again
-    return locate_wakes(boundary, resolve_on(*boundary, without_regions(boundary->mesh(), motion), notes),
+    return locate_wakes(boundary, resolve_on(*boundary, without_regions(boundary->names(), motion), notes),
                         motion.regions, notes);
   }
 
@@ -326,6 +338,7 @@ class Finder {
     each_explicit([&](int r, int p, int c, auto const& nodes) {
       for (auto const n : nodes) out_.requests.requests.push_back({slot[std::size_t(owner(n))], Index(n), -1, r, p, c});
     });
+    out_.requests.name(out_.motion->boundary().names());
     out_.requests.sort(rules().rules);
     out_.requests.n_boundary_nodes = Index(out_.known.size());
     out_.requests.defaults_yield = true;
@@ -503,9 +516,8 @@ std::shared_ptr<BoundaryMotion const> boundary_motion(BoundaryConditions const& 
 namespace {
 
 std::vector<Vec3> evaluate_copies(BoundaryConditions const& boundary, BoundaryMotion const& motion) {
-  BoundaryMesh const& mesh = boundary.motion->boundary().mesh();
-  std::vector<Vec3> out = evaluate(mesh, boundary.requests, motion, {});
-  require_equal_copies(mesh, boundary.requests, motion, out);
+  std::vector<Vec3> out = evaluate(boundary.requests, motion, {});
+  require_equal_copies(boundary.requests, motion, out);
   return out;
 }
 

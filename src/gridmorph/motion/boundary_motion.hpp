@@ -15,6 +15,9 @@ namespace gridmorph {
 
 class FfdMotion;
 
+/// resolve() (motion/motion.hpp) of what has names alone.
+ResolvedMotion resolve(NamedBoundary const& boundary, Motion const& motion);
+
 /// Turns resolved rules into numbers. Construction does what is shared between nodes (blade sections and mid-camber
 /// motion for slide and follow, profiles for slip); evaluation is then independent per point.
 ///

@@ -19,24 +19,15 @@ namespace {
 
 using Request = BoundaryRequests::Request;
 
-/// The name of what asks, as users know it: by its family where it has one.
-std::string requester(BoundaryMesh const& mesh, Request const& r) {
-  auto const named = [](std::string const& name, std::vector<std::string> const& families) {
-    return "'" + (families.empty() ? name : families.front()) + "'";
-  };
-  if (r.patch < 0) {
-    AnyConnection const connection = connections_of(mesh)[std::size_t(r.interface)];
-    return named(connection.name, connection.families) + " (periodic)";
-  }
-  Patch const& patch = mesh.patches[std::size_t(r.patch)];
-  return patch.kind == PatchKind::region ? "'" + patch.name + "' (region)" : named(patch.name, patch.families);
+/// The name of what asks, as users know it.
+std::string const& requester(BoundaryRequests const& boundary, Request const& r) {
+  return r.patch < 0 ? boundary.interface_names[std::size_t(r.interface)] : boundary.patch_names[std::size_t(r.patch)];
 }
 
 class Evaluation {
  public:
-  Evaluation(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
-             std::vector<Mat3> const& rotations)
-      : mesh_(mesh),
+  Evaluation(BoundaryRequests const& boundary, BoundaryMotion const& motion, std::vector<Mat3> const& rotations)
+      : places_(motion.boundary().coordinates()),
         boundary_(boundary),
         rotations_(rotations),
         rules_(motion),
@@ -59,7 +50,7 @@ class Evaluation {
     if (yields(r, *first) || rule(*first).rank < rule(r).rank) return;
     if (distance(values_[node], value) <= tolerance_) return;
     if (are_torn_copies(*first, r))
-      torn_.add(rule(r).where, std::string(rule_name(rule(r).rule)), requester(mesh_, *first),
+      torn_.add(rule(r).where, std::string(rule_name(rule(r).rule)), requester(boundary_, *first),
                 {first->node, r.node, values_[node], value, turn_between(*first, r)});
     else
       disagreements_.add(first->node, side(*first, values_[node]), side(r, value));
@@ -70,9 +61,9 @@ class Evaluation {
   std::vector<Vec3> result() {
     Problems problems;
     for (std::string& message :
-         disagreements_.messages(mesh_, motion_.axis, [&](auto& name) { return points_of(name); }))
+         disagreements_.messages(rules_.boundary(), motion_.axis, [&](auto& name) { return points_of(name); }))
       problems.add(std::move(message));
-    for (std::string& message : torn_.messages(mesh_)) problems.add(std::move(message));
+    for (std::string& message : torn_.messages(rules_.boundary())) problems.add(std::move(message));
     problems.throw_if_any<MotionError>();
     return std::move(values_);
   }
@@ -81,8 +72,7 @@ class Evaluation {
   /// Whether one rule is asked for a node and for a periodic copy of it, elsewhere.
   [[nodiscard]] bool are_torn_copies(Request const& a, Request const& b) const {
     constexpr double apart = 1e-6;  // of the size
-    return a.rule == b.rule &&
-           distance(mesh_.coordinates[a.node], mesh_.coordinates[b.node]) > apart * rules_.boundary().size();
+    return a.rule == b.rule && distance(places_[a.node], places_[b.node]) > apart * rules_.boundary().size();
   }
   [[nodiscard]] double turn_between(Request const& a, Request const& b) const {
     auto const rotation = [&](Request const& r) {
@@ -92,7 +82,7 @@ class Evaluation {
   }
 
   [[nodiscard]] Disagreeing side(Request const& r, Vec3 const& displacement) const {
-    return {requester(mesh_, r), rule(r).where, displacement, is_default(r), advice(r)};
+    return {requester(boundary_, r), rule(r).where, displacement, is_default(r), advice(r)};
   }
 
   /// What to do where an attached part disagrees with its walls: one motion for all nodes of a part parts it from walls
@@ -100,7 +90,7 @@ class Evaluation {
   [[nodiscard]] std::string advice(Request const& r) const {
     auto const* attached = std::get_if<AttachedRule>(&rule(r).rule);
     if (attached == nullptr || attached->how == AttachedRule::How::nearest) return {};
-    return "what " + requester(mesh_, r) +
+    return "what " + requester(boundary_, r) +
            " is attached to bends there: take how = \"nearest\", with which every node follows the walls, or rule = "
            "\"carry\", with which it keeps its shape and the walls around go along";
   }
@@ -112,8 +102,8 @@ class Evaluation {
     for (Request const& r : boundary_.requests) {
       if (r.patch < 0) continue;
       auto const [at, added] = has_name.try_emplace(r.patch, false);
-      if (added) at->second = requester(mesh_, r) == name;
-      if (at->second) of_patch[r.patch].push_back(mesh_.coordinates[r.node]);
+      if (added) at->second = requester(boundary_, r) == name;
+      if (at->second) of_patch[r.patch].push_back(places_[r.node]);
     }
     std::vector<std::vector<Vec3>> out;
     for (auto& [patch, points] : of_patch) out.push_back(std::move(points));
@@ -122,7 +112,8 @@ class Evaluation {
 
   [[nodiscard]] MotionRule const& rule(Request const& r) const { return motion_.rules[std::size_t(r.rule)]; }
   [[nodiscard]] bool is_default(Request const& r) const {
-    return r.patch >= 0 && motion_.patch[std::size_t(r.patch)].by_default;
+    return r.patch >= 0 && std::size_t(r.patch) < motion_.patch.size() &&
+           motion_.patch[std::size_t(r.patch)].by_default;
   }
   [[nodiscard]] bool is_prescribed(Request const& r) const {
     return std::holds_alternative<PrescribedRule>(rule(r).rule);
@@ -132,10 +123,10 @@ class Evaluation {
     if (is_prescribed(own) != is_prescribed(other)) return is_prescribed(own);
     if (own.rule != other.rule && rules_.gives_way(own.rule, other.patch)) return true;
     return boundary_.defaults_yield && is_default(own) && !is_default(other) &&
-           mesh_.zone_of(own.node) != mesh_.zone_of(other.node);
+           rules_.boundary().zone_of(own.node) != rules_.boundary().zone_of(other.node);
   }
 
-  BoundaryMesh const& mesh_;
+  Coordinates const& places_;
   BoundaryRequests const& boundary_;
   std::vector<Mat3> const& rotations_;
   BoundaryMotion const& rules_;
@@ -149,6 +140,19 @@ class Evaluation {
 
 }  // namespace
 
+void BoundaryRequests::name(NamedBoundary const& boundary) {
+  auto const named = [](std::string const& name, std::vector<std::string> const& families) {
+    return "'" + (families.empty() ? name : families.front()) + "'";
+  };
+  patch_names.clear();
+  for (Patch const& patch : boundary.patches())
+    patch_names.push_back(patch.kind == PatchKind::region ? "'" + patch.name + "' (region)"
+                                                          : named(patch.name, patch.families));
+  interface_names.clear();
+  for (AnyConnection const& connection : boundary.connections())
+    interface_names.push_back(named(connection.name, connection.families) + " (periodic)");
+}
+
 void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
   auto const order = [&](Request const& r) { return std::pair(rules[std::size_t(r.rule)].rank, r.rule); };
   std::stable_sort(requests.begin(), requests.end(),
@@ -159,7 +163,7 @@ namespace {
 
 /// Refuses what leads out of the plane of a mesh that has no other: it would be dropped, and a body that is turned out
 /// of its plane squeezed.
-void require_in_plane(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+void require_in_plane(BoundaryRequests const& boundary, BoundaryMotion const& motion,
                       std::vector<Vec3> const& displacement) {
   Boundary const& surfaces = motion.boundary();
   if (!surfaces.is_plane()) return;
@@ -180,23 +184,24 @@ void require_in_plane(BoundaryMesh const& mesh, BoundaryRequests const& boundary
   if (out == nullptr || most <= std::max(tolerance, rounding * largest)) return;
   MotionRule const& rule = motion.motion().rules[std::size_t(out->rule)];
   throw MotionError((rule.where.empty() ? "rule " + std::to_string(out->rule + 1) : rule.where) + ": rule '" +
-                    std::string(rule_name(rule.rule)) + "' displaces " + describe_node(mesh, out->node) + " of " +
-                    requester(mesh, *out) + " by " + to_text(displacement[std::size_t(out->boundary_node)], 3) + ", " +
-                    to_text(most, 3) +
+                    std::string(rule_name(rule.rule)) + "' displaces " + surfaces.describe_node(out->node) + " of " +
+                    requester(boundary, *out) + " by " + to_text(displacement[std::size_t(out->boundary_node)], 3) +
+                    ", " + to_text(most, 3) +
                     " of it out of the plane of a 2-D mesh; move it within its plane, turn it about " +
                     to_text(normal, 3));
 }
 
 }  // namespace
 
-std::vector<Vec3> evaluate(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+std::vector<Vec3> evaluate(BoundaryRequests const& boundary, BoundaryMotion const& motion,
                            std::vector<Mat3> const& rotations) {
   auto const& requests = boundary.requests;
-  Evaluation evaluation(mesh, boundary, motion, rotations);
+  Coordinates const& places = motion.boundary().coordinates();
+  Evaluation evaluation(boundary, motion, rotations);
   for (std::size_t begin = 0, end = 0; begin < requests.size(); begin = end) {
     while (end < requests.size() && requests[end].rule == requests[begin].rule) ++end;
     std::vector<Vec3> points(end - begin), u(end - begin);
-    for (std::size_t n = begin; n < end; ++n) points[n - begin] = mesh.coordinates[requests[n].node];
+    for (std::size_t n = begin; n < end; ++n) points[n - begin] = places[requests[n].node];
     motion.displacement(requests[begin].rule, points, u);
     for (std::size_t n = begin; n < end; ++n) {
       std::int32_t const r = requests[n].rotation;
@@ -204,16 +209,16 @@ std::vector<Vec3> evaluate(BoundaryMesh const& mesh, BoundaryRequests const& bou
     }
   }
   auto out = evaluation.result();
-  require_in_plane(mesh, boundary, motion, out);
+  require_in_plane(boundary, motion, out);
   return out;
 }
 
-void require_equal_copies(BoundaryMesh const& mesh, BoundaryRequests const& boundary, BoundaryMotion const& motion,
+void require_equal_copies(BoundaryRequests const& boundary, BoundaryMotion const& motion,
                           std::vector<Vec3> const& displacement) {
   ResolvedMotion const& resolved = motion.motion();
-  double const size = motion.boundary().size();
+  Boundary const& surfaces = motion.boundary();
   double const tolerance =
-      displacement_tolerance(resolved.conformity_tolerance, size, motion.boundary().precision().resolution());
+      displacement_tolerance(resolved.conformity_tolerance, surfaces.size(), surfaces.precision().resolution());
   // The first request of a boundary node gives its value.
   std::vector<Request const*> first(displacement.size(), nullptr);
   std::unordered_map<Index, Index> asked;
@@ -222,36 +227,31 @@ void require_equal_copies(BoundaryMesh const& mesh, BoundaryRequests const& boun
     asked[r.node] = r.boundary_node;
   }
   TornCopies torn;
-  for (std::size_t c = 0; c < mesh.connections.size(); ++c) {
-    auto const& connection = mesh.connections[c];
-    if (!connection.periodic || connection.nodes.empty()) continue;
-    std::vector<Vec3> from, to;
-    for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
-      from.push_back(mesh.coordinates[connection.nodes[n]]);
-      to.push_back(mesh.coordinates[connection.donor_nodes[n]]);
-    }
-    Mat3 const turn = fit_periodic(*connection.periodic, from, to, size).rotation;
-    for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
-      auto const own = asked.find(connection.nodes[n]), other = asked.find(connection.donor_nodes[n]);
+  for (AnyConnection const& connection : surfaces.connections()) {
+    if (!connection.periodic) continue;
+    auto const pairs = surfaces.pairs(connection.number);
+    if (pairs.empty()) continue;
+    Mat3 const turn = surfaces.transform(connection.number).rotation;
+    for (auto const& [node, donor] : pairs) {
+      auto const own = asked.find(node), other = asked.find(donor);
       if (own == asked.end() || other == asked.end()) continue;
       Request const &a = *first[std::size_t(own->second)], &b = *first[std::size_t(other->second)];
       Vec3 const u = displacement[std::size_t(own->second)];
       Vec3 const copy = transpose(turn) * displacement[std::size_t(other->second)];
       if (a.rule != b.rule || distance(u, copy) <= tolerance) continue;
       MotionRule const& rule = resolved.rules[std::size_t(a.rule)];
-      torn.add(rule.where, std::string(rule_name(rule.rule)), requester(mesh, a),
+      torn.add(rule.where, std::string(rule_name(rule.rule)), requester(boundary, a),
                {own->first, other->first, u, copy, norm(rotation_vector(turn))});
     }
   }
   Problems problems;
-  for (std::string& message : torn.messages(mesh)) problems.add(std::move(message));
+  for (std::string& message : torn.messages(surfaces)) problems.add(std::move(message));
   problems.throw_if_any<MotionError>();
 }
 
-std::vector<Index> deciding_requests(BoundaryMesh const& mesh, BoundaryRequests const& boundary,
-                                     BoundaryMotion const& motion) {
+std::vector<Index> deciding_requests(BoundaryRequests const& boundary, BoundaryMotion const& motion) {
   std::vector<Mat3> const none;
-  Evaluation evaluation(mesh, boundary, motion, none);
+  Evaluation evaluation(boundary, motion, none);
   for (std::size_t n = 0; n < boundary.requests.size(); ++n) evaluation.take(n, {});  // ranks decide, not values
   return evaluation.given_by();
 }

@@ -38,11 +38,11 @@ bool is_of_revolution(std::vector<std::vector<Vec3>> const& patches, Axis const&
 }
 
 /// The rule that lets the nodes of a surface slide on it.
-std::string sliding_rule(BoundaryMesh const& mesh, Axis const& axis, std::vector<std::vector<Vec3>> const& patches) {
-  double const size = mesh.size();
+std::string sliding_rule(Boundary const& boundary, Axis const& axis, std::vector<std::vector<Vec3>> const& patches) {
+  double const size = boundary.size();
   if (std::all_of(patches.begin(), patches.end(), [&](auto const& points) { return is_plane(points, size); }))
     return R"(rule = "slip", surface = "plane")";
-  if (mesh.dimension == 2) return R"(rule = "fixed", rank = 1)";
+  if (boundary.dimension() == 2) return R"(rule = "fixed", rank = 1)";
   return is_of_revolution(patches, axis) ? R"(rule = "slip", surface = "revolution")"
                                          : R"(rule = "slip", surface = "baseline")";
 }
@@ -67,18 +67,18 @@ std::vector<Disagreements::Pair const*> Disagreements::largest() const {
   return out;
 }
 
-std::string Disagreements::statement(BoundaryMesh const& mesh, Pair const& pair) {
+std::string Disagreements::statement(Boundary const& boundary, Pair const& pair) {
   Found const& f = pair.second;
   return "patches " + f.first.name + " and " + f.second.name + " disagree on " + std::to_string(f.count) +
-         " common nodes, most at " + describe_node(mesh, f.node) + ": " + to_text(f.first.displacement, 6) + " from " +
-         f.first.where + ", " + to_text(f.second.displacement, 6) + " from " + f.second.where + ", apart by " +
-         to_text(f.gap, 6);
+         " common nodes, most at " + boundary.describe_node(f.node) + ": " + to_text(f.first.displacement, 6) +
+         " from " + f.first.where + ", " + to_text(f.second.displacement, 6) + " from " + f.second.where +
+         ", apart by " + to_text(f.gap, 6);
 }
 
-std::string Disagreements::missing_rule(BoundaryMesh const& mesh, Axis const& axis, std::string const& name,
+std::string Disagreements::missing_rule(Boundary const& boundary, Axis const& axis, std::string const& name,
                                         std::vector<std::vector<Vec3>> const& patches) {
   return "no rule names " + name + ", so it stays where it is: add one, [[motion]] with patches = [\"" +
-         name.substr(1, name.find('\'', 1) - 1) + "\"], " + sliding_rule(mesh, axis, patches);
+         name.substr(1, name.find('\'', 1) - 1) + "\"], " + sliding_rule(boundary, axis, patches);
 }
 
 }  // namespace gridmorph

@@ -1,8 +1,8 @@
 // Rules that give common nodes of patches, or a node and its periodic copy, different displacements, as messages.
 #pragma once
 
+#include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/geometry/axis.hpp>
-#include <gridmorph/mesh/mesh.hpp>
 
 #include <map>
 #include <string>
@@ -34,14 +34,14 @@ class Disagreements {
   /// The messages, those about the most nodes first. `points_of(name)`: the nodes of what has that name, patch by
   /// patch, from which is told what rule it could have.
   template <class PointsOf>
-  [[nodiscard]] std::vector<std::string> messages(BoundaryMesh const& mesh, Axis const& axis,
+  [[nodiscard]] std::vector<std::string> messages(Boundary const& boundary, Axis const& axis,
                                                   PointsOf const& points_of) const {
     std::vector<std::string> out;
     for (auto const* one : largest()) {
-      std::string text = statement(mesh, *one);
+      std::string text = statement(boundary, *one);
       std::size_t const silent = text.size();
       for (Disagreeing const* side : {&one->second.first, &one->second.second})
-        if (side->by_default) text += "; " + missing_rule(mesh, axis, side->name, points_of(side->name));
+        if (side->by_default) text += "; " + missing_rule(boundary, axis, side->name, points_of(side->name));
       for (Disagreeing const* side : {&one->second.first, &one->second.second})
         if (text.size() == silent && !side->advice.empty()) text += "; " + side->advice;
       if (text.size() == silent)
@@ -62,8 +62,8 @@ class Disagreements {
   using Pair = std::pair<std::pair<std::string, std::string> const, Found>;
 
   [[nodiscard]] std::vector<Pair const*> largest() const;
-  [[nodiscard]] static std::string statement(BoundaryMesh const& mesh, Pair const& pair);
-  [[nodiscard]] static std::string missing_rule(BoundaryMesh const& mesh, Axis const& axis, std::string const& name,
+  [[nodiscard]] static std::string statement(Boundary const& boundary, Pair const& pair);
+  [[nodiscard]] static std::string missing_rule(Boundary const& boundary, Axis const& axis, std::string const& name,
                                                 std::vector<std::vector<Vec3>> const& patches);
 
   std::map<std::pair<std::string, std::string>, Found> found_;
@@ -81,7 +81,7 @@ class TornCopies {
   /// `rule`: where it is given; `name`: of its rule; `patch`: of the node, as users know it.
   void add(std::string const& rule, std::string const& name, std::string const& patch, Copies const& copies);
 
-  [[nodiscard]] std::vector<std::string> messages(BoundaryMesh const& mesh) const;
+  [[nodiscard]] std::vector<std::string> messages(Boundary const& boundary) const;
 
  private:
   struct Found {

@@ -1,8 +1,8 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/motion/detail/free_periodics.hpp>
 #include <gridmorph/motion/ffd/check_ffd.hpp>
-#include <gridmorph/motion/motion.hpp>
 
 #include <algorithm>
 #include <array>
@@ -31,58 +31,26 @@ bool is_direct(Rule const& rule) {
          is<TargetRule>(rule) || is<InflateRule>(rule) || is<FfdRule>(rule);
 }
 
-/// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
-/// only if there is no other.
-int find_partner(BoundaryMesh const& mesh, int interface) {
-  Interface1to1 const& own = mesh.interfaces[interface];
-  IndexRange const donor = own.to_donor(own.range);
-  for (std::size_t j = 0; j < mesh.interfaces.size(); ++j) {
-    Interface1to1 const& other = mesh.interfaces[j];
-    if (int(j) != interface && other.zone == own.donor_zone && other.donor_zone == own.zone && other.range == donor &&
-        other.to_donor(other.range) == own.range)
-      return int(j);
-  }
-  return -1;
-}
-
-/// The other side of a connection of elements that the file stores twice, or -1; sides may list their nodes in any
-/// order.
-int find_partner(std::vector<Connection> const& connections, int connection) {
-  Connection const& own = connections[std::size_t(connection)];
-  auto const sorted = [](std::vector<Index32> list) {
-    std::sort(list.begin(), list.end());
-    return list;
-  };
-  for (std::size_t j = 0; j < connections.size(); ++j) {
-    Connection const& other = connections[j];
-    if (int(j) != connection && other.zone == own.donor_zone && other.donor_zone == own.zone && other.periodic &&
-        other.nodes.size() == own.nodes.size() && sorted(own.donor_nodes) == sorted(other.nodes))
-      return int(j);
-  }
-  return -1;
-}
-
-std::vector<std::string> names_of(BoundaryMesh const& mesh, std::vector<int> const& patches) {
+std::vector<std::string> names_of(std::vector<Patch> const& of, std::vector<int> const& patches) {
   std::set<std::string> names;
-  for (int p : patches)
-    names.insert(mesh.patches[p].families.empty() ? mesh.patches[p].name : mesh.patches[p].families.front());
+  for (int p : patches) names.insert(of[p].families.empty() ? of[p].name : of[p].families.front());
   return {names.begin(), names.end()};
 }
 
 class Resolver {
  public:
-  Resolver(BoundaryMesh const& mesh, Motion const& motion)
-      : mesh_(mesh),
+  Resolver(NamedBoundary const& boundary, Motion const& motion)
+      : boundary_(boundary),
         motion_(motion),
-        patch_claim_(mesh.patches.size(), unclaimed),
-        connections_(connections_of(mesh)),
+        patch_claim_(boundary.patches().size(), unclaimed),
+        connections_(boundary.connections()),
         interface_claim_(connections_.size(), unclaimed) {}
 
   ResolvedMotion run() {
     result_.axis = motion_.axis;
     result_.conformity_tolerance = motion_.conformity_tolerance;
     result_.rules = motion_.rules;
-    result_.patch.resize(mesh_.patches.size());
+    result_.patch.resize(boundary_.patches().size());
     result_.interface.resize(connections_.size());
 
     check_motion();
@@ -197,19 +165,19 @@ class Resolver {
     for (std::string const& selector : motion_.rules[r].patches) {
       Selection s;
       try {
-        s = select(mesh_, selector);
+        s = boundary_.select(selector);
       } catch (MotionError const& e) {
         problems_.add(label(r) + ": " + e.what());
         continue;
       }
-      if (s.empty()) problems_.add(label(r) + ": " + matches_nothing(mesh_, selector));
-      for (int p : s.patches) claim_one(patch_claim_[p], r, describe_patch(mesh_, mesh_.patches[p]));
+      if (s.empty()) problems_.add(label(r) + ": " + boundary_.matches_nothing(selector));
+      for (int p : s.patches) claim_one(patch_claim_[p], r, boundary_.describe_patch(p));
       for (int i : s.interfaces) claim_interface(i, r);
     }
   }
 
   void claim_interface(int i, int r) {
-    std::string const name = "interface " + describe_interface(mesh_, connections_[std::size_t(i)]);
+    std::string const name = "interface " + boundary_.describe_interface(connections_[std::size_t(i)]);
     if (!connections_[std::size_t(i)].periodic) {
       problems_.add(label(r) + " names the plain " + name +
                     ", which is inside the domain and moves with the volume; "
@@ -229,16 +197,9 @@ class Resolver {
     }
     claim_one(interface_claim_[i], r, "periodic " + name);
     // The file stores the connection once per side: both sides are one interface to the user.
-    if (int const partner = partner_of(i); partner >= 0)
+    if (int const partner = boundary_.other_side(i); partner >= 0)
       claim_one(interface_claim_[partner], r,
-                "periodic interface " + describe_interface(mesh_, connections_[std::size_t(partner)]));
-  }
-
-  [[nodiscard]] int partner_of(int i) const {
-    auto const blocks = int(mesh_.interfaces.size());
-    if (i < blocks) return find_partner(mesh_, i);
-    int const j = find_partner(mesh_.connections, i - blocks);
-    return j < 0 ? -1 : blocks + j;
+                "periodic interface " + boundary_.describe_interface(connections_[std::size_t(partner)]));
   }
 
   void claim_one(int& claim, int r, std::string name) {
@@ -263,19 +224,20 @@ class Resolver {
       else
         result_.interface[i].by_default = connections_[i].periodic.has_value();
     }
-    if (auto const free = detail::free_by_default(mesh_, result_); !free.empty())
+    if (auto const free = detail::free_by_default(connections_, result_); !free.empty())
       took_default(detail::periodics, free, detail::move_as_one);
   }
 
   void settle_patches() {
     std::vector<int> symmetry, poles, fixed;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       result_.patch[p].rule = patch_claim_[p];
       if (patch_claim_[p] != unclaimed) continue;
       result_.patch[p].by_default = true;
       // A polar line is no plane to slide on.
-      bool const plane = mesh_.patches[p].kind == PatchKind::symmetry && mesh_.patches[p].bc_type != "BCSymmetryPolar";
-      bool const pole = mesh_.patches[p].kind == PatchKind::degenerate;
+      bool const plane =
+          boundary_.patches()[p].kind == PatchKind::symmetry && boundary_.patches()[p].bc_type != "BCSymmetryPolar";
+      bool const pole = boundary_.patches()[p].kind == PatchKind::degenerate;
       (plane ? symmetry : pole ? poles : fixed).push_back(int(p));
     }
     add_default(symmetry, SlipRule{}, "symmetry patches", "slip on their own plane");
@@ -285,7 +247,7 @@ class Resolver {
 
   void add_default(std::vector<int> const& patches, Rule rule, char const* what, char const* decision) {
     if (patches.empty()) return;
-    std::vector<std::string> const names = names_of(mesh_, patches);
+    std::vector<std::string> const names = names_of(boundary_.patches(), patches);
     for (int p : patches) result_.patch[p].rule = int(result_.rules.size());
     result_.rules.push_back({names, std::move(rule), 0, std::string("default of ") + what});
     took_default(what, names, decision);
@@ -315,7 +277,7 @@ class Resolver {
     if (of->empty()) problems_.add(label(r) + ": `of` is empty; name the walls whose motion it takes up");
     std::vector<int> blades;
     try {
-      blades = select_patches(mesh_, *of);
+      blades = boundary_.select_patches(*of);
     } catch (MotionError const& e) {
       problems_.add(label(r) + ": of: " + e.what());
     }
@@ -324,7 +286,7 @@ class Resolver {
     for (int p : blades)
       if (int const own = result_.patch[p].rule; !is_direct(result_.rules[own].rule)) unfit[own].push_back(p);
     for (auto const& [own, patches] : unfit)
-      problems_.add(label(r) + ": of: " + quote_list(names_of(mesh_, patches)) + " has the rule '" +
+      problems_.add(label(r) + ": of: " + quote_list(names_of(boundary_.patches(), patches)) + " has the rule '" +
                     std::string(rule_name(result_.rules[own].rule)) +
                     "', whose displacement is not known beforehand; give it "
                     "fixed, rigid, formula, field, sections, target, inflate or ffd");
@@ -337,26 +299,26 @@ class Resolver {
       if (result_.patch[p].by_default) unnamed.push_back(p);
     if (!unnamed.empty())
       problems_.add(
-          label(r) + ": of: no rule names " + quote_list(names_of(mesh_, unnamed)) +
+          label(r) + ": of: no rule names " + quote_list(names_of(boundary_.patches(), unnamed)) +
           ", so nothing says how the walls move that the features sit on; give them one (\"fixed\" if they stand)");
   }
 
   /// Checks the rules of regions, which ask for something at places inside the domain, with no surface to go by.
   void check_regions() {
     std::map<int, std::set<std::string>> unfit;
-    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-      if (mesh_.patches[p].kind != PatchKind::region) continue;
+    for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
+      if (boundary_.patches()[p].kind != PatchKind::region) continue;
       Rule const& rule = result_.rules[std::size_t(result_.patch[p].rule)].rule;
       if (!is<FixedRule>(rule) && !is<RigidRule>(rule) && !is<FunctionRule>(rule) && !is<AttachedRule>(rule) &&
           !is<WakeRule>(rule) && !is<ShockRule>(rule) && !is<PrescribedRule>(rule))
-        unfit[result_.patch[p].rule].insert(mesh_.patches[p].name);
+        unfit[result_.patch[p].rule].insert(boundary_.patches()[p].name);
     }
     for (auto const& [r, names] : unfit)
       problems_.add(label(r) + " names the region " + quote_list({names.begin(), names.end()}) +
                     "; regions take fixed, rigid, formula, field, attached, wake or shock");
   }
 
-  BoundaryMesh const& mesh_;
+  NamedBoundary const& boundary_;
   Motion const& motion_;
   std::vector<int> patch_claim_;
   std::vector<AnyConnection> connections_;
@@ -378,6 +340,8 @@ std::string_view rule_name(Rule const& rule) {
   return names[rule.index()];
 }
 
-ResolvedMotion resolve(BoundaryMesh const& mesh, Motion const& motion) { return Resolver(mesh, motion).run(); }
+ResolvedMotion resolve(NamedBoundary const& boundary, Motion const& motion) { return Resolver(boundary, motion).run(); }
+
+ResolvedMotion resolve(BoundaryMesh const& mesh, Motion const& motion) { return resolve(NamedBoundary(mesh), motion); }
 
 }  // namespace gridmorph

@@ -35,14 +35,14 @@ void TornCopies::add(std::string const& rule, std::string const& name, std::stri
   found.gap = gap;
 }
 
-std::vector<std::string> TornCopies::messages(BoundaryMesh const& mesh) const {
+std::vector<std::string> TornCopies::messages(Boundary const& boundary) const {
   std::vector<std::string> out;
   for (auto const& [rule, f] : found_)
     out.push_back(rule + " (" + f.name + ") gives " + std::to_string(f.count) + " nodes of " + f.patch +
-                  " and their periodic copies different displacements, most at " + describe_node(mesh, f.worst.node) +
-                  ": " + to_text(f.worst.displacement, 6) + " there, and " + to_text(f.worst.of_copy, 6) +
-                  " in its place from " + describe_node(mesh, f.worst.copy) + ", apart by " + to_text(f.gap, 6) +
-                  remedy(f.worst.turn_rad));
+                  " and their periodic copies different displacements, most at " +
+                  boundary.describe_node(f.worst.node) + ": " + to_text(f.worst.displacement, 6) + " there, and " +
+                  to_text(f.worst.of_copy, 6) + " in its place from " + boundary.describe_node(f.worst.copy) +
+                  ", apart by " + to_text(f.gap, 6) + remedy(f.worst.turn_rad));
   return out;
 }
 

@@ -15,7 +15,7 @@ std::vector<InnerRegion> located(Mesh& mesh, Links const& links, Motion const& m
   if (!have_wakes(motion.regions)) return motion.regions;
   auto const boundary = std::make_shared<Boundary const>(mesh, links.mesh_size);
   std::vector<std::string> notes;  // those of the rules come again
-  return locate_wakes(boundary, resolve(mesh, without_regions(mesh, motion)), motion.regions, notes);
+  return locate_wakes(boundary, resolve(mesh, without_regions(NamedBoundary(mesh), motion)), motion.regions, notes);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct PreparedMorph {
   [[nodiscard]] Plan const& plan() const { return planned.plan; }
   /// Displacements of Plan::boundary_nodes by the rules. Throws MotionError (see evaluate()).
   [[nodiscard]] std::vector<Vec3> boundary_displacement() const {
-    return evaluate(mesh, planned.boundary, surface, planned.plan.rotations);
+    return evaluate(planned.boundary, surface, planned.plan.rotations);
   }
 };
 

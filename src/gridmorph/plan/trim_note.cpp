@@ -17,14 +17,12 @@ namespace {
 /// Gathers what rules and surfaces say of one another.
 class Gathering {
  public:
-  Gathering(BoundaryMesh const& mesh, BoundaryRequests const& requests, BoundaryMotion const& motion,
-            std::vector<Vec3> const& given)
-      : mesh_(mesh),
+  Gathering(BoundaryRequests const& requests, BoundaryMotion const& motion, std::vector<Vec3> const& given)
+      : boundary_(motion.boundary()),
         requests_(requests),
         rules_(motion.motion().rules),
         given_(given),
-        size_(motion.boundary().size()),
-        deciding_(deciding_requests(mesh, requests, motion)),
+        deciding_(deciding_requests(requests, motion)),
         largest_(rules_.size(), 0) {
     for (std::size_t n = 0; n < given.size(); ++n)
       if (int const r = rule_of(n); r >= 0)
@@ -36,7 +34,7 @@ class Gathering {
     Vec3 const u = given_[slot];
     int const rule = rule_of(slot);
     if (u == Vec3{} || rule < 0) return;
-    double const d = distance(surface.view().constrain(mesh_.coordinates[node], u), u);
+    double const d = distance(surface.view().constrain(boundary_.coordinates()[node], u), u);
     if (!(d > tolerance)) return;
     Found& found = found_[{patch, rule}];
     found.nodes.insert(node);
@@ -49,9 +47,9 @@ class Gathering {
     std::vector<Trim> out;
     for (auto const& [of, found] : found_) {
       auto const [patch, rule] = of;
-      out.push_back({describe_patch(mesh_, mesh_.patches[std::size_t(patch)]), rules_[std::size_t(rule)].where,
-                     Index(found.nodes.size()), found.most, describe_node(mesh_, found.where),
-                     largest_[std::size_t(rule)], outcome, size_});
+      out.push_back({boundary_.describe_patch(patch), rules_[std::size_t(rule)].where, Index(found.nodes.size()),
+                     found.most, boundary_.describe_node(found.where), largest_[std::size_t(rule)], outcome,
+                     boundary_.size()});
     }
     return out;
   }
@@ -71,11 +69,10 @@ class Gathering {
     return rule >= 0 && goes_along(rules_[std::size_t(rule)].rule) ? -1 : rule;
   }
 
-  BoundaryMesh const& mesh_;
+  Boundary const& boundary_;
   BoundaryRequests const& requests_;
   std::vector<MotionRule> const& rules_;
   std::vector<Vec3> const& given_;
-  double size_;
   std::vector<Index> deciding_;
   std::vector<double> largest_;                 ///< per rule
   std::map<std::pair<int, int>, Found> found_;  ///< by patch and rule
@@ -94,12 +91,12 @@ std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
 
 }  // namespace
 
-std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
-                        BoundaryMotion const& motion, std::vector<Vec3> const& boundary) {
+std::vector<Trim> trims(Plan const& plan, BoundaryRequests const& requests, BoundaryMotion const& motion,
+                        std::vector<Vec3> const& boundary) {
   std::unordered_map<Index, std::size_t> slot_of;
   for (std::size_t n = 0; n < plan.boundary_nodes.size(); ++n) slot_of.emplace(plan.boundary_nodes[n], n);
   std::vector<int> const patch_of = patches_of_surfaces(motion);
-  Gathering gathering(mesh, requests, motion, boundary);
+  Gathering gathering(requests, motion, boundary);
   for (SpreadPass const& pass : plan.spreads)
     for (kernels::SlipEnd const& end : pass.ends) {
       auto const slot = slot_of.find(end.node);
@@ -114,7 +111,7 @@ std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests con
 
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given) {
   BoundaryMotion const& motion = *boundary.motion;
-  Gathering gathering(motion.boundary().mesh(), boundary.requests, motion, given);
+  Gathering gathering(boundary.requests, motion, given);
   double const size = motion.boundary().size();
   for (auto const& at : boundary.given_on_slip) {
     SlipSurface const& surface = motion.slip_surfaces()[std::size_t(at.surface)];

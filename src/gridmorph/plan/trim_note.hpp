@@ -28,8 +28,8 @@ struct Trim {
 
 /// What is trimmed in a mesh of blocks: displacements (per Plan::boundary_nodes) that finalize puts back. Empty when
 /// all stay on the slip surfaces as build_spread() asks of them. Cost: O(nodes on slip surfaces, requests).
-std::vector<Trim> trims(Mesh const& mesh, Plan const& plan, BoundaryRequests const& requests,
-                        BoundaryMotion const& motion, std::vector<Vec3> const& boundary);
+std::vector<Trim> trims(Plan const& plan, BoundaryRequests const& requests, BoundaryMotion const& motion,
+                        std::vector<Vec3> const& boundary);
 /// What is trimmed in a mesh of elements: displacements (per BoundaryConditions::known) that a morph puts back before
 /// anything else.
 std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> const& given);

@@ -30,11 +30,11 @@ std::vector<Index> at_places(Coordinates const& x, std::vector<Index> const& nod
 }
 
 /// Per patch the number of the rule that names it, or -1.
-std::vector<int> rules_of_patches(BoundaryMesh const& mesh, std::vector<MotionRule> const& rules) {
-  std::vector<int> out(mesh.patches.size(), -1);
+std::vector<int> rules_of_patches(Boundary const& boundary, std::vector<MotionRule> const& rules) {
+  std::vector<int> out(boundary.patches().size(), -1);
   for (std::size_t r = 0; r < rules.size(); ++r)
     for (std::string const& selector : rules[r].patches)
-      for (int const p : select(mesh, selector).patches) out[std::size_t(p)] = int(r);
+      for (int const p : boundary.select(selector).patches) out[std::size_t(p)] = int(r);
   return out;
 }
 
@@ -42,7 +42,7 @@ std::vector<int> rules_of_patches(BoundaryMesh const& mesh, std::vector<MotionRu
 
 Clearances::Clearances(CaseFile const& case_file, Boundary boundary)
     : case_file_(case_file), boundary_(std::move(boundary)) {
-  auto const rule_of_patch = rules_of_patches(boundary_.mesh(), case_file_.motion.rules);
+  auto const rule_of_patch = rules_of_patches(boundary_, case_file_.motion.rules);
   for (ClearanceCase const& one : case_file_.clearances) tips_.push_back(tip(one, rule_of_patch));
 }
 

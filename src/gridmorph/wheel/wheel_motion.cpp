@@ -139,11 +139,6 @@ std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, Pla
   return {};
 }
 
-Mesh const& WheelMotion::asked_mesh() const {
-  PreparedMorph const* const blocks = plan_ ? PlanAccess::blocks(*plan_) : nullptr;
-  return blocks != nullptr ? blocks->mesh : sector_.mesh();
-}
-
 std::vector<std::vector<Vec3>> WheelMotion::values_of(std::vector<Motion> const& motions) const {
   std::vector<std::vector<Vec3>> values(motions.size());
   for (int const m : used_) values[m] = displacement(m, motions[m]);
@@ -151,14 +146,14 @@ std::vector<std::vector<Vec3>> WheelMotion::values_of(std::vector<Motion> const&
 }
 
 std::vector<Vec3> WheelMotion::displacement(int m, Motion const& motion) const {
-  return evaluate(asked_mesh(), requests_, rules_.at(same_rules_[m])->with(motion), rotations_);
+  return evaluate(requests_, rules_.at(same_rules_[m])->with(motion), rotations_);
 }
 
 std::vector<Trim> WheelMotion::trims(std::vector<Vec3> const& boundary) const {
   PreparedMorph const* const blocks = PlanAccess::blocks(*plan_);
   if (blocks == nullptr) return plan_->trims(boundary);
   // In words of the rules: those of a plan that was opened give no values.
-  return gridmorph::trims(blocks->mesh, blocks->plan(), requests_, *rules_.at(same_rules_[used_.front()]), boundary);
+  return gridmorph::trims(blocks->plan(), requests_, *rules_.at(same_rules_[used_.front()]), boundary);
 }
 
 }  // namespace gridmorph

@@ -81,8 +81,6 @@ class WheelMotion {
   void add_rules(Make const& make);
   /// nodes: of the plan's boundary, in its order.
   void add_passages(Asked const& asked, std::vector<Index> const& nodes, std::vector<BladeShare> const& shares);
-  /// Whose numbers `requests_` have: the sector, of blocks as it was opened.
-  [[nodiscard]] Mesh const& asked_mesh() const;
   [[nodiscard]] std::vector<std::vector<Vec3>> values_of(std::vector<Motion> const& motions) const;
 
   IndexedMesh sector_;

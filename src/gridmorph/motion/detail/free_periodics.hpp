@@ -11,9 +11,10 @@
 namespace gridmorph::detail {
 
 /// Names of the periodic connections that move freely because no rule names them, each once.
-inline std::vector<std::string> free_by_default(BoundaryMesh const& mesh, ResolvedMotion const& motion) {
+inline std::vector<std::string> free_by_default(std::vector<AnyConnection> const& connections,
+                                                ResolvedMotion const& motion) {
   std::set<std::string> names;
-  for (AnyConnection const& c : connections_of(mesh))
+  for (AnyConnection const& c : connections)
     if (motion.interface[std::size_t(c.number)].by_default)
       names.insert(c.families.empty() ? c.name : c.families.front());
   return {names.begin(), names.end()};

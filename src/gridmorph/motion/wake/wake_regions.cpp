@@ -48,12 +48,12 @@ bool have_wakes(std::span<InnerRegion const> regions) {
   return std::any_of(regions.begin(), regions.end(), [](InnerRegion const& r) { return r.wake.has_value(); });
 }
 
-Motion without_regions(BoundaryMesh const& mesh, Motion motion) {
+Motion without_regions(NamedBoundary const& boundary, Motion motion) {
   auto const about_region = [&](std::string const& selector) {
     if (selector == "type:region") return true;
     bool const any = std::any_of(motion.regions.begin(), motion.regions.end(),
                                  [&](InnerRegion const& r) { return glob_match(selector, r.name); });
-    return any && select(mesh, selector).empty();
+    return any && boundary.select(selector).empty();
   };
   std::vector<MotionRule> kept;
   for (MotionRule& rule : motion.rules) {

@@ -22,6 +22,6 @@ bool have_wakes(std::span<InnerRegion const> regions);
 
 /// The motion without regions, and without what its rules say of them alone: what can be resolved before regions are
 /// patches of the mesh.
-Motion without_regions(BoundaryMesh const& mesh, Motion motion);
+Motion without_regions(NamedBoundary const& boundary, Motion motion);
 
 }  // namespace gridmorph

@@ -81,6 +81,7 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
   }
 
   BoundaryRequests boundary;
+  boundary.name(NamedBoundary(mesh));
   std::vector<Index> first_node(lattice.n_classes(), -1);
   for (int c = 0; c < lattice.n_classes(); ++c) {
     if (!known(c)) continue;
