@@ -6,6 +6,7 @@
 
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/quality/certificate.hpp>
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ Coordinates copy_of(Coordinates const& x) {
   return out;
 }
 
-std::vector<int> handedness(Mesh const& mesh) { return zone_handedness(Exec(), mesh, views(mesh.coordinates)); }
+MorphPlan plan_of(Outcome const& run) { return PlanAccess::of(PreparedMorph(run.prepared)); }
 
 struct Smoothed {
   Coordinates x;
@@ -38,7 +39,7 @@ struct Smoothed {
 
 Smoothed smooth(Outcome const& run, Coordinates const& morphed, HostInstance const& host = {}) {
   Smoothed out{copy_of(morphed), {}};
-  out.report = smooth_shapes(host, run.prepared, handedness(run.mesh), out.x);
+  out.report = smooth_shapes(host, IndexedMesh(run.mesh), plan_of(run), out.x);
   return out;
 }
 
@@ -94,14 +95,14 @@ double largest_distance(Coordinates const& a, Coordinates const& b) {
 
 TEST_P(ShapeSmoothing, WhatIsFrozenFollowsTheMotionWithoutJumps) {
   auto const& [run, smoothed] = overdone(GetParam());
-  FrozenSmoothing const frozen = lost_shapes({}, run.prepared, handedness(run.mesh), copy_of(run.morphed.position));
+  FrozenSmoothing const frozen = lost_shapes({}, IndexedMesh(run.mesh), copy_of(run.morphed.position));
   EXPECT_EQ(Index(frozen.cells.size()), smoothed.report.triggered_before);
   Coordinates const& home = run.mesh.coordinates;
   auto const at = [&](double share) {
     Coordinates plain(home.size());
     for (Index n = 0; n < home.size(); ++n) plain.set(n, home[n] + share * (run.morphed.position[n] - home[n]));
     Coordinates x = copy_of(plain);
-    (void)smooth_frozen({}, run.prepared, handedness(run.mesh), x, frozen);
+    (void)smooth_frozen({}, IndexedMesh(run.mesh), plan_of(run), x, frozen);
     return std::pair(plain, x);
   };
   EXPECT_EQ(largest_distance(at(0).second, home), 0);

@@ -41,13 +41,14 @@ Recorded const& recorded(Case const& c) {
   double factor = 1;
   for (int n = 0; n < 10; ++n, factor *= 1.5) {
     Outcome run = morph(c.mesh(), c.motion(factor), c.options);
-    std::vector<int> const handedness = zone_handedness(Exec(), run.mesh, views(run.mesh.coordinates));
-    FrozenSmoothing const lost = lost_shapes({}, run.prepared, handedness, run.morphed.position);
+    IndexedMesh const mesh(run.mesh);
+    FrozenSmoothing const lost = lost_shapes({}, mesh, run.morphed.position);
     if (lost.cells.empty()) continue;
     Coordinates smoothed = copy_of(run.morphed.position);
-    (void)smooth_frozen({}, run.prepared, handedness, smoothed, lost);
+    MorphPlan const plan = PlanAccess::of(prepare(c.mesh(), c.motion(factor), c.options));
+    (void)smooth_frozen({}, mesh, plan, smoothed, lost);
     if (largest_distance(smoothed, run.morphed.position) == 0) continue;
-    SmoothingRecord record(PlanAccess::of(prepare(c.mesh(), c.motion(factor), c.options)));
+    SmoothingRecord record(plan);
     record.add(run.boundary, run.morphed.position, smoothed);
     Frozen const map = record.map();
     return known.try_emplace(c.name, Recorded{std::move(run), std::move(smoothed), map}).first->second;

@@ -151,7 +151,7 @@ TEST(GivenSlip, HoldsInSeveralStepsToo) {
   StepOptions options;
   options.plan = coarse();
   options.steps = 2;
-  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, m.prepared, m.boundary, options);
+  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(m.prepared), m.boundary, options);
   EXPECT_LT(largest_change(c, x, "i_min", component(0)), 1e-14);
   EXPECT_LT(largest_change(c, x, "j_max", component(1)), 1e-14);
   for (Index32 const n : c.nodes_of("k_min")) EXPECT_LT(distance(x[n], m.x[n]), 1e-14) << n;

@@ -114,7 +114,8 @@ TEST(SteppedMorph, ABodyTurnsByARightAngle) {
     int calls = 0;
     StepOptions options;
     options.progress = [&](int step) { EXPECT_EQ(step, ++calls); };
-    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, in_one.prepared, in_one.boundary, options);
+    Coordinates const x =
+        morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(in_one.prepared), in_one.boundary, options);
     EXPECT_EQ(calls, 2);
     EXPECT_EQ(c.mesh.coordinates.x.data(), baseline.x.data());
     EXPECT_EQ(c.inverted(x), 0) << elements;
@@ -132,7 +133,7 @@ TEST(SteppedMorph, AShiftOfEverythingIsOne) {
   StepOptions options;
   options.steps = 3;
   auto const u = prepared.boundary_displacement();
-  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options);
+  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options);
   for (Index n = 0; n < c.mesh.n_nodes(); ++n) EXPECT_LT(norm(x[n] - c.mesh.coordinates[n] - Vec3{1, 2, 3}), 1e-12);
 }
 
@@ -153,7 +154,7 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
     StepOptions options;
     options.steps = 3;
     Coordinates const before = c.mesh.coordinates;
-    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options);
+    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options);
     for (Index n = 0; n < c.mesh.n_nodes(); ++n)
       if (before[n].y == 0 || before[n].y == 8) {
         EXPECT_NEAR(x[n].y, before[n].y, 1e-12);
@@ -168,12 +169,12 @@ TEST(SteppedMorph, ABackgroundMeshOfOnesOwnIsRefusedAndTheMeshIsAsItWas) {
   StepOptions options;
   options.plan.elements.background = std::make_shared<Background const>();
   auto const u = prepared.boundary_displacement();
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), PlanError);
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options), PlanError);
   options.plan.elements.background = {};
   options.progress = [](int step) {
     if (step == 2) throw MotionError("stop");
   };
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, prepared, u, options), MotionError);
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options), MotionError);
   EXPECT_EQ(c.mesh.coordinates.x.data(), before.x.data());
 }
 

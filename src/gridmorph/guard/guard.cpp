@@ -6,10 +6,9 @@
 namespace gridmorph {
 
 GuardReport guard(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan, Coordinates& morphed) {
-  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan))
-    return report_of(smooth_shapes(host, *blocks, mesh.handedness(), morphed));
-  return relax_bad_elements(mesh.mesh(), mesh.topology(), *PlanAccess::elements(plan), morphed,
-                            {.signs = mesh.signs()});
+  if (auto const elements = PlanAccess::guarded_elements(plan))
+    return relax_bad_elements(mesh.mesh(), mesh.topology(), *elements, morphed, {.signs = mesh.signs()});
+  return report_of(smooth_shapes(host, mesh, plan, morphed));
 }
 
 }  // namespace gridmorph

@@ -3,7 +3,6 @@
 #include <gridmorph/guard/detail/middle_nodes.hpp>
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
@@ -23,11 +22,11 @@ constexpr double doubtful_determinant = 0.5;
 
 class Relaxation {
  public:
-  Relaxation(Mesh const& mesh, UnstructuredTopology const& topology, PreparedUnstructured const& prepared,
-             Coordinates& morphed, RelaxOptions const& options)
+  Relaxation(Mesh const& mesh, UnstructuredTopology const& topology, GuardedElements const& plan, Coordinates& morphed,
+             RelaxOptions const& options)
       : mesh_(mesh),
         topology_(topology),
-        prepared_(prepared),
+        plan_(plan),
         x_(morphed),
         now_(views(morphed)),
         baseline_(views(mesh.coordinates)),
@@ -50,7 +49,7 @@ class Relaxation {
       std::vector<Index> const middles = middles_of(nodes);
       std::vector<Vec3> before;
       for (Index32 const n : nodes) before.push_back(x_[n]);
-      for (Index const row : middles) before.push_back(x_[prepared_.plan.middle.target[std::size_t(row)]]);
+      for (Index const row : middles) before.push_back(x_[plan_.middle.target[std::size_t(row)]]);
       if (shapes)
         smooth_shapes(nodes, sweeps);
       else
@@ -60,7 +59,7 @@ class Relaxation {
       if (after.worse_than(now)) {
         for (std::size_t k = 0; k < nodes.size(); ++k) x_.set(nodes[k], before[k]);
         for (std::size_t m = 0; m < middles.size(); ++m)
-          x_.set(prepared_.plan.middle.target[std::size_t(middles[m])], before[nodes.size() + m]);
+          x_.set(plan_.middle.target[std::size_t(middles[m])], before[nodes.size() + m]);
         copy_coincident();
         if (std::exchange(shapes, false)) continue;
         if ((sweeps /= 2) == 0) break;
@@ -138,45 +137,42 @@ class Relaxation {
     add_all(bad);
     for (Index const row : middles) add_all(elements_of_middle_[row]);
     for (Index32 const n : nodes) add(n);
-    UnstructuredPlan const& plan = prepared_.plan;
-    for (std::size_t k = 0; k < plan.copies.size(); ++k)
-      if (std::binary_search(nodes.begin(), nodes.end(), plan.copied[k])) add(plan.copies[k]);
+    for (std::size_t k = 0; k < plan_.copies.size(); ++k)
+      if (std::binary_search(nodes.begin(), nodes.end(), plan_.copied[k])) add(plan_.copies[k]);
     std::sort(found.begin(), found.end());
     return found;
   }
 
   void find_held() {
-    UnstructuredPlan const& plan = prepared_.plan;
     held_.assign(std::size_t(mesh_.n_nodes()), 0);
-    for (auto const* list : {&plan.known, &plan.residual_nodes, &plan.columns.node})
+    for (auto const* list : {&plan_.known, &plan_.beside_known, &plan_.in_columns})
       for (Index32 const n : *list) held_[std::size_t(n)] = 1;
-    for (Index32 const n : plan.middle.target) held_[std::size_t(n)] = 1;
+    for (Index32 const n : plan_.middle.target) held_[std::size_t(n)] = 1;
     find_middles();
   }
 
   /// Rows of further nodes that are not on a boundary, by the corners that they follow; the elements around each row's
   /// node.
   void find_middles() {
-    UnstructuredPlan const& plan = prepared_.plan;
-    if (plan.middle.size() == 0) return;
+    if (plan_.middle.size() == 0) return;
     std::vector<std::uint8_t> on_boundary(std::size_t(mesh_.n_nodes()), 0);
-    for (Index32 const n : plan.middle_boundary.node) on_boundary[std::size_t(n)] = 1;
-    for (PeriodicImage const& image : plan.images)
+    for (Index32 const n : plan_.middle_on_boundary) on_boundary[std::size_t(n)] = 1;
+    for (PeriodicImage const& image : plan_.images)
       on_boundary[std::size_t(image.node)] = on_boundary[std::size_t(image.owner)] = 1;
     std::vector<std::pair<Index32, Index32>> followed, holders;  // corner, row; row, element
     std::vector<Index32> row_of(std::size_t(mesh_.n_nodes()), -1);
-    for (Index r = 0; r < plan.middle.size(); ++r) {
-      row_of[std::size_t(plan.middle.target[std::size_t(r)])] = Index32(r);
-      if (on_boundary[std::size_t(plan.middle.target[std::size_t(r)])] != 0) continue;
-      for (Index k = plan.middle.first[std::size_t(r)]; k < plan.middle.first[std::size_t(r) + 1]; ++k)
-        followed.emplace_back(plan.middle.item[std::size_t(k)], Index32(r));
+    for (Index r = 0; r < plan_.middle.size(); ++r) {
+      row_of[std::size_t(plan_.middle.target[std::size_t(r)])] = Index32(r);
+      if (on_boundary[std::size_t(plan_.middle.target[std::size_t(r)])] != 0) continue;
+      for (Index k = plan_.middle.first[std::size_t(r)]; k < plan_.middle.first[std::size_t(r) + 1]; ++k)
+        followed.emplace_back(plan_.middle.item[std::size_t(k)], Index32(r));
     }
     for (Index e = 0; e < mesh_.n_elements(); ++e)
       for (Index32 const n : mesh_.elements.nodes[e].subspan(mesh_.elements.corners(e).size()))
-        if (Index32 const r = row_of[std::size_t(prepared_.graph.representative[std::size_t(n)])]; r >= 0)
+        if (Index32 const r = row_of[std::size_t(plan_.graph.representative[std::size_t(n)])]; r >= 0)
           holders.emplace_back(r, Index32(e));
     middles_of_node_ = lists(followed, mesh_.n_nodes());
-    elements_of_middle_ = lists(holders, plan.middle.size());
+    elements_of_middle_ = lists(holders, plan_.middle.size());
   }
 
   static CsrGraph lists(std::vector<std::pair<Index32, Index32>>& pairs, Index count) {
@@ -206,9 +202,9 @@ class Relaxation {
   /// Pulls nodes between corners where elements are broken by them alone; from here on they keep what that added when
   /// they follow their corners.
   void pull_middles(Judged& now) {
-    InterpolationOperator const& rows = prepared_.plan.middle;
+    InterpolationOperator const& rows = plan_.middle;
     if (rows.size() == 0 || now.bad.empty()) return;
-    if (!middle_nodes_) middle_nodes_.emplace(mesh_, prepared_, tables_, signs_);
+    if (!middle_nodes_) middle_nodes_.emplace(mesh_, plan_, tables_, signs_);
     Coordinates before(mesh_.n_nodes());
     Kokkos::deep_copy(before.x, x_.x);
     Kokkos::deep_copy(before.y, x_.y);
@@ -234,7 +230,7 @@ class Relaxation {
 
   /// Further nodes follow their corners as in the morph.
   void follow(std::vector<Index> const& middles) {
-    InterpolationOperator const& rows = prepared_.plan.middle;
+    InterpolationOperator const& rows = plan_.middle;
     Coordinates const& x = mesh_.coordinates;
     auto const displacement = [&](Index32 n) { return x_[n] - x[n]; };
     for (Index const r : middles) {
@@ -259,11 +255,11 @@ class Relaxation {
       found.push_back(n);
     };
     for (Index32 const e : bad)
-      for (Index32 const c : mesh_.elements.corners(e)) add(prepared_.graph.representative[std::size_t(c)]);
+      for (Index32 const c : mesh_.elements.corners(e)) add(plan_.graph.representative[std::size_t(c)]);
     for (std::size_t begin = 0, ring = 0; ring < std::size_t(rings); ++ring) {
       std::size_t const end = found.size();
       for (; begin < end; ++begin)
-        for (Index32 const m : prepared_.graph.neighbours[found[begin]]) add(m);
+        for (Index32 const m : plan_.graph.neighbours[found[begin]]) add(m);
     }
     std::erase_if(found, [&](Index32 n) { return held_[std::size_t(n)] != 0; });
     std::sort(found.begin(), found.end());
@@ -274,11 +270,10 @@ class Relaxation {
   [[nodiscard]] bool by_shape() const { return mesh_.dimension == 3; }
 
   void smooth_shapes(std::vector<Index32> const& nodes, int sweeps) {
-    UnstructuredPlan const& plan = prepared_.plan;
     std::vector<std::pair<Index32, Index32>> copies;
-    for (std::size_t k = 0; k < plan.copies.size(); ++k)
-      if (std::binary_search(nodes.begin(), nodes.end(), plan.copied[k]))
-        copies.emplace_back(plan.copied[k], plan.copies[k]);
+    for (std::size_t k = 0; k < plan_.copies.size(); ++k)
+      if (std::binary_search(nodes.begin(), nodes.end(), plan_.copied[k]))
+        copies.emplace_back(plan_.copied[k], plan_.copies[k]);
     std::sort(copies.begin(), copies.end());
     detail::ElementShapes(mesh_, topology_, nodes, copies).smooth(sweeps, 1, x_);
   }
@@ -286,7 +281,7 @@ class Relaxation {
   /// Displacement at a node by the affine function that fits those of its neighbours best.
   [[nodiscard]] Vec3 affine_mean(Index32 n) const {
     Coordinates const& x = mesh_.coordinates;
-    auto const neighbours = prepared_.graph.neighbours[n];
+    auto const neighbours = plan_.graph.neighbours[n];
     double weights = 0;
     Vec3 centre, mean;
     auto const weight = [&](Index32 m) { return 1 / std::max(distance(x[n], x[m]), 1e-300); };
@@ -337,15 +332,14 @@ class Relaxation {
   }
 
   void copy_coincident() {
-    UnstructuredPlan const& plan = prepared_.plan;
     Coordinates const& x = mesh_.coordinates;
-    for (std::size_t k = 0; k < plan.copies.size(); ++k)
-      x_.set(plan.copies[k], x[plan.copies[k]] + (x_[plan.copied[k]] - x[plan.copied[k]]));
+    for (std::size_t k = 0; k < plan_.copies.size(); ++k)
+      x_.set(plan_.copies[k], x[plan_.copies[k]] + (x_[plan_.copied[k]] - x[plan_.copied[k]]));
   }
 
   Mesh const& mesh_;
   UnstructuredTopology const& topology_;
-  PreparedUnstructured const& prepared_;
+  GuardedElements const& plan_;
   Coordinates& x_;
   CoordinateViews<Kokkos::HostSpace> now_,
       baseline_;  ///< x_ and the mesh's: counting who shares them costs more than a determinant
@@ -353,7 +347,7 @@ class Relaxation {
   std::vector<signed char> signs_;
   detail::ElementTables<Kokkos::HostSpace> tables_;
   std::vector<std::uint8_t> held_;
-  CsrGraph middles_of_node_;     ///< rows of UnstructuredPlan::middle that follow each node
+  CsrGraph middles_of_node_;     ///< rows of GuardedElements::middle that follow each node
   CsrGraph elements_of_middle_;  ///< per row
   std::optional<detail::MiddleNodes> middle_nodes_;
   std::vector<Vec3> pull_;            ///< per row, what pulling added; empty where nothing was
@@ -362,10 +356,9 @@ class Relaxation {
 
 }  // namespace
 
-GuardReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology,
-                               PreparedUnstructured const& prepared, Coordinates& morphed,
-                               RelaxOptions const& options) {
-  return Relaxation(mesh, topology, prepared, morphed, options).run();
+GuardReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology, GuardedElements const& plan,
+                               Coordinates& morphed, RelaxOptions const& options) {
+  return Relaxation(mesh, topology, plan, morphed, options).run();
 }
 
 }  // namespace gridmorph

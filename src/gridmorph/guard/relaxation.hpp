@@ -4,12 +4,11 @@
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
+#include <gridmorph/plan/guarded_elements.hpp>
 
 #include <vector>
 
 namespace gridmorph {
-
-struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 
 struct RelaxOptions {
   double share = 0.2;              ///< an element is bad when its determinant is not above this share of the baseline's
@@ -32,14 +31,13 @@ struct RelaxOptions {
 /// places between those that boundaries give, or straight, as far as they need to (guard/detail/middle_nodes.hpp).
 /// Explicit, the same bits for any number of threads. Cost: the determinants of all elements once, per round those
 /// around the nodes that move; 1 kB and a few microseconds per sweep and node that moves.
-GuardReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology,
-                               PreparedUnstructured const& prepared, Coordinates& morphed,
-                               RelaxOptions const& options = {});
+GuardReport relax_bad_elements(Mesh const& mesh, UnstructuredTopology const& topology, GuardedElements const& plan,
+                               Coordinates& morphed, RelaxOptions const& options = {});
 
 /// morph_in_steps() of a mesh and a plan in parts. signs: numbering_signs() of the mesh; left empty, they are found
 /// again in each step.
 Coordinates morph_in_steps(Mesh const& mesh, UnstructuredTopology const& topology,
-                           BoundaryFacePatches const& face_patches, PreparedUnstructured const& prepared,
+                           BoundaryFacePatches const& face_patches, MorphPlan const& plan,
                            std::vector<Vec3> const& displacement, StepOptions const& options,
                            std::vector<signed char> const& signs = {});
 

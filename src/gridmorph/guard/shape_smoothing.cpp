@@ -4,6 +4,7 @@
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ namespace gridmorph {
 namespace {
 
 using detail::BlockCells;
-using detail::BlockPoints;
 using detail::CellNodes;
 using detail::ShapeRegion;
 
@@ -60,26 +60,26 @@ struct RegionPieces {
 
 class ShapeSmoothing {
  public:
-  ShapeSmoothing(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
-                 Coordinates& x, ShapeSmoothingOptions const& options)
+  ShapeSmoothing(HostInstance const& host, IndexedMesh const& mesh, Coordinates& x,
+                 ShapeSmoothingOptions const& options)
       : host_(host),
-        prepared_(prepared),
-        handedness_(handedness),
+        mesh_(mesh.mesh()),
+        handedness_(mesh.handedness()),
         x_(x),
         options_(options),
-        cells_(prepared.mesh),
-        looks_at_(prepared.mesh.zones.size(), options.zones.empty() ? 1 : 0) {
+        cells_(mesh_),
+        looks_at_(mesh_.zones.size(), options.zones.empty() ? 1 : 0) {
     for (int const zone : options.zones) looks_at_[std::size_t(zone)] = 1;
   }
 
-  ShapeSmoothingReport run() {
+  ShapeSmoothingReport run(MorphPlan const& plan) {
     ShapeSmoothingReport report;
     std::vector<Index> lost = find_lost();
     report.triggered_before = report.triggered_after = Index(lost.size());
     if (lost.empty()) return report;
-    BlockPoints points(prepared_);
+    BlockPoints points = PlanAccess::block_points(plan);
     for (ShapeSmoothingOptions::Round const& round : options_.rounds) {
-      ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, lost, round.rings);
+      ShapeRegion const region = detail::shape_region(host_, cells_, points, lost, round.rings);
       ShapeCount const before = count(region);
       bool const first = &round == &options_.rounds.front();
       if (first) {
@@ -91,7 +91,7 @@ class ShapeSmoothing {
       RegionPieces const pieces(region);
       std::vector<Vec3> const places = places_of(region);
       std::vector<ShapeCount> const had = count(region, pieces);
-      detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_);
+      detail::smooth_region(host_, points, region, round.sweeps, round.relaxation, x_);
       if (!put_back_worse(region, pieces, had, places)) continue;
       ShapeCount const after = count(region);
       ++report.rounds;
@@ -104,16 +104,16 @@ class ShapeSmoothing {
     return report;
   }
 
-  ShapeSmoothingReport run(FrozenSmoothing const& frozen) {
+  ShapeSmoothingReport run(MorphPlan const& plan, FrozenSmoothing const& frozen) {
     ShapeSmoothingReport report;
     std::vector<Index> cells = frozen.cells;
     std::erase_if(cells, [this](Index cell) { return !looks_at(cells_.zone(cell)); });
     if (cells.empty() || options_.rounds.empty() || is_baseline()) return report;
     ShapeSmoothingOptions::Round const round = frozen.inverted ? options_.rounds.back() : options_.rounds.front();
-    BlockPoints points(prepared_);
-    ShapeRegion const region = detail::shape_region(host_, prepared_, cells_, points, cells, round.rings);
+    BlockPoints points = PlanAccess::block_points(plan);
+    ShapeRegion const region = detail::shape_region(host_, cells_, points, cells, round.rings);
     ShapeCount const before = count(region);
-    detail::smooth_region(host_, prepared_, region, round.sweeps, round.relaxation, x_, true);
+    detail::smooth_region(host_, points, region, round.sweeps, round.relaxation, x_, true);
     ShapeCount const after = count(region);
     return {before.lost, after.lost, before.inverted, after.inverted, before.smallest, after.smallest, 1};
   }
@@ -128,9 +128,9 @@ class ShapeSmoothing {
  private:
   [[nodiscard]] bool is_baseline() const {
     for (std::size_t z = 0; z < looks_at_.size(); ++z) {
-      Zone const& zone = prepared_.mesh.zones[z];
+      Zone const& zone = mesh_.zones[z];
       for (Index n = zone.first_node; looks_at(int(z)) && n < zone.first_node + zone.size(); ++n)
-        if (!(x_[n] == prepared_.mesh.coordinates[n])) return false;
+        if (!(x_[n] == mesh_.coordinates[n])) return false;
     }
     return true;
   }
@@ -153,7 +153,7 @@ class ShapeSmoothing {
     auto const negative = [&](Coordinates const& x) {
       return kernels::jacobian_sign(corners(x, nodes), handedness) >= kernels::JacobianSign::negative;
     };
-    Coordinates const& baseline = prepared_.mesh.coordinates;
+    Coordinates const& baseline = mesh_.coordinates;
     return negative(x_) && !negative(baseline) &&
            !kernels::flat_cell(corners(baseline, nodes), corners(x_, nodes), handedness).stays_flat();
   }
@@ -162,7 +162,7 @@ class ShapeSmoothing {
     CellShape out;
     for (int c = 0; c < 8; ++c) {
       Vec3 now[3], before[3];
-      detail::corner_edges(prepared_.mesh.coordinates, nodes, c, before);
+      detail::corner_edges(mesh_.coordinates, nodes, c, before);
       double const was = scaled_jacobian(before);
       if (!(std::abs(was) > kernels::flat_before)) continue;  // collapsed or flat: the certificate tells
       detail::corner_edges(x_, nodes, c, now);
@@ -245,7 +245,7 @@ class ShapeSmoothing {
   [[nodiscard]] std::vector<Vec3> places_of(ShapeRegion const& region) const {
     std::vector<Vec3> places;
     places.reserve(region.nodes.size());
-    for (detail::PointNode const& n : region.nodes) places.push_back(x_[n.node]);
+    for (PointNode const& n : region.nodes) places.push_back(x_[n.node]);
     return places;
   }
   [[nodiscard]] std::vector<ShapeCount> count(ShapeRegion const& region, RegionPieces const& pieces) const {
@@ -274,8 +274,8 @@ class ShapeSmoothing {
   }
 
   HostInstance const& host_;
-  PreparedMorph const& prepared_;
-  std::span<int const> handedness_;
+  Mesh const& mesh_;
+  std::vector<int> const& handedness_;
   Coordinates& x_;
   ShapeSmoothingOptions const& options_;
   BlockCells cells_;
@@ -291,22 +291,21 @@ void FrozenSmoothing::join(FrozenSmoothing const& other) {
   inverted = inverted || other.inverted;
 }
 
-FrozenSmoothing lost_shapes(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
-                            Coordinates const& morphed, ShapeSmoothingOptions const& options) {
+FrozenSmoothing lost_shapes(HostInstance const& host, IndexedMesh const& mesh, Coordinates const& morphed,
+                            ShapeSmoothingOptions const& options) {
   Coordinates x = morphed;  // the same memory, which is only looked at
-  return ShapeSmoothing(host, prepared, handedness, x, options).lost();
+  return ShapeSmoothing(host, mesh, x, options).lost();
 }
 
-ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const& prepared,
-                                   std::span<int const> handedness, Coordinates& morphed, FrozenSmoothing const& frozen,
+ShapeSmoothingReport smooth_frozen(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                   Coordinates& morphed, FrozenSmoothing const& frozen,
                                    ShapeSmoothingOptions const& options) {
-  return ShapeSmoothing(host, prepared, handedness, morphed, options).run(frozen);
+  return ShapeSmoothing(host, mesh, morphed, options).run(plan, frozen);
 }
 
-ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const& prepared,
-                                   std::span<int const> handedness, Coordinates& morphed,
-                                   ShapeSmoothingOptions const& options) {
-  return ShapeSmoothing(host, prepared, handedness, morphed, options).run();
+ShapeSmoothingReport smooth_shapes(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                   Coordinates& morphed, ShapeSmoothingOptions const& options) {
+  return ShapeSmoothing(host, mesh, morphed, options).run(plan);
 }
 
 GuardReport report_of(ShapeSmoothingReport const& report) {

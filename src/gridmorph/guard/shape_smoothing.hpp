@@ -3,14 +3,10 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/guard/guard.hpp>
-#include <gridmorph/mesh/mesh.hpp>
 
-#include <span>
 #include <vector>
 
 namespace gridmorph {
-
-struct PreparedMorph;  ///< plan/prepare.hpp
 
 struct ShapeSmoothingOptions {
   /// A corner has lost its shape when its scaled Jacobian (volume of its edges' box / product of their lengths) is
@@ -51,13 +47,13 @@ struct ShapeSmoothingReport {
 GuardReport report_of(ShapeSmoothingReport const& report);
 
 /// What a morph lost of shapes: what smooth_shapes() starts from. Cost: one look at all cells.
-FrozenSmoothing lost_shapes(HostInstance const& host, PreparedMorph const& prepared, std::span<int const> handedness,
-                            Coordinates const& morphed, ShapeSmoothingOptions const& options = {});
+FrozenSmoothing lost_shapes(HostInstance const& host, IndexedMesh const& mesh, Coordinates const& morphed,
+                            ShapeSmoothingOptions const& options = {});
 
 /// Smooths around the given cells, with the same points and sweeps for every displacement, delta growing with what is
 /// lost, and takes nothing back: the result follows the displacement without jumps. Otherwise as smooth_shapes().
-ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const& prepared,
-                                   std::span<int const> handedness, Coordinates& morphed, FrozenSmoothing const& frozen,
+ShapeSmoothingReport smooth_frozen(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                   Coordinates& morphed, FrozenSmoothing const& frozen,
                                    ShapeSmoothingOptions const& options = {});
 
 /// Moves nodes so that the sum of the relative shapes f (kernels/relative_shape.hpp) of all corners around becomes
@@ -69,12 +65,11 @@ ShapeSmoothingReport smooth_frozen(HostInstance const& host, PreparedMorph const
 /// A round is kept in every part of the region, of those that have no cell in common, in which fewer cells are inverted
 /// after it, or as many and the smallest scaled Jacobian is larger, or the same and fewer cells have lost their shape;
 /// nodes of the other parts are put back bit for bit. Nothing happens where no cell lost its shape. Explicit, the same
-/// bits for any number of threads. `handedness`: zone_handedness() of the baseline.
+/// bits for any number of threads. mesh: what the plan was made for.
 ///
 /// Cost: one look at all cells; where some lost their shape, two bytes and two numbers per node of the mesh, and in the
 /// region about 1 kB per node and a few microseconds per node and sweep.
-ShapeSmoothingReport smooth_shapes(HostInstance const& host, PreparedMorph const& prepared,
-                                   std::span<int const> handedness, Coordinates& morphed,
-                                   ShapeSmoothingOptions const& options = {});
+ShapeSmoothingReport smooth_shapes(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                   Coordinates& morphed, ShapeSmoothingOptions const& options = {});
 
 }  // namespace gridmorph

@@ -1,5 +1,4 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/guard/detail/block_points.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/guard/smoothing_record.hpp>
@@ -8,10 +7,9 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/plan/block_points.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
-#include <gridmorph/plan/prepare.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/quality.hpp>
 
 #include <algorithm>
@@ -53,9 +51,7 @@ std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, std::
 }
 
 /// Takes nodes on slip surfaces, point by point, out of those that move in space.
-void add_slides(PreparedMorph const& blocks, SmoothingMap& map) {
-  detail::BlockPoints const points(blocks);
-  auto const& surfaces = blocks.surface.slip_surfaces();
+void add_slides(BlockPoints const& points, SmoothingMap& map) {
   std::map<int, std::int32_t> number;  // of a surface, in the map
   std::vector<std::uint8_t> done(std::size_t(map.n_nodes), 0);
   std::vector<Index> free;
@@ -67,9 +63,9 @@ void add_slides(PreparedMorph const& blocks, SmoothingMap& map) {
   };
   for (std::size_t at = 0; at < map.node.size(); ++at) {
     if (done[std::size_t(map.node[at])] != 0) continue;
-    std::vector<detail::PointNode> nodes;
-    points.for_each_node(map.node[at], [&](detail::PointNode const& n) { nodes.push_back(n); });
-    auto const slide = detail::sliding_point(blocks, points, nodes);
+    std::vector<PointNode> nodes;
+    points.for_each_node(map.node[at], [&](PointNode const& n) { nodes.push_back(n); });
+    auto const slide = points.sliding(nodes);
     auto const of_frame = slide && slide->count > 0
                               ? std::lower_bound(map.node.begin(), map.node.end(), slide->node.node)
                               : map.node.end();
@@ -78,20 +74,17 @@ void add_slides(PreparedMorph const& blocks, SmoothingMap& map) {
       append(shifts, at);
       continue;
     }
-    kernels::SlidingShift entry{points.slot(slide->node.node),
-                                slide->node.node,
-                                slide->node.matrix,
-                                {-1, -1, -1},
-                                {0, 0, 0},
-                                blocks.mesh.coordinates[slide->node.node]};
+    kernels::SlidingShift entry{
+        points.slot(slide->node.node),      slide->node.node, slide->node.matrix, {-1, -1, -1}, {0, 0, 0},
+        points.baseline()[slide->node.node]};
     for (int m = 0; m < slide->count; ++m) {
       int const surface = slide->surface[std::size_t(m)];
       auto const [known, fresh] = number.try_emplace(surface, std::int32_t(map.surfaces.size()));
-      if (fresh) map.surfaces.push_back(surfaces[std::size_t(surface)]);
+      if (fresh) map.surfaces.push_back(points.slip_surfaces()[std::size_t(surface)]);
       entry.surface[m] = known->second;
       entry.own_offset[m] = slide->own_offset[std::size_t(m)];
     }
-    for (detail::PointNode const& n : nodes) {
+    for (PointNode const& n : nodes) {
       done[std::size_t(n.node)] = 1;
       map.slide_nodes.push_back({n.node, std::int32_t(map.slides.size()), n.matrix});
     }
@@ -102,16 +95,11 @@ void add_slides(PreparedMorph const& blocks, SmoothingMap& map) {
   map.shift = std::move(shifts);
 }
 
-std::size_t count_boundary_nodes(MorphPlan const& plan) {
-  PreparedMorph const* const blocks = PlanAccess::blocks(plan);
-  return blocks ? blocks->plan().boundary_nodes.size() : PlanAccess::elements(plan)->plan.known.size();
-}
-
 }  // namespace
 
 void SmoothingRecord::add(std::span<Vec3 const> boundary, Coordinates const& plain, Coordinates const& guarded) {
   Index const n_nodes = plan_.n_nodes();
-  require_boundary_size(who, boundary.size(), count_boundary_nodes(plan_), "MorphPlan::boundary_nodes()");
+  require_boundary_size(who, boundary.size(), std::size_t(plan_.n_boundary_nodes()), "MorphPlan::boundary_nodes()");
   if (plain.size() != n_nodes || guarded.size() != n_nodes)
     throw ConfigError(std::string(who) + ": " + std::to_string(plain.size()) + " and " +
                       std::to_string(guarded.size()) + " nodes, and the plan's mesh has " + std::to_string(n_nodes));
@@ -181,7 +169,7 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
       out.misfit = std::max(out.misfit, norm(left));
     }
   }
-  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) add_slides(*blocks, out);
+  if (PlanAccess::chains(plan_) != nullptr) add_slides(PlanAccess::block_points(plan_), out);
   return made;
 }
 
@@ -204,20 +192,19 @@ MorphPlan freeze_guard(HostInstance const& host, IndexedMesh const& mesh, MorphP
   SmoothingRecord record(plan);
   Morpher<Exec> const morpher(Exec(), plan.with(nullptr), mesh.mesh().coordinates);
   Coordinates plain(mesh.n_nodes());
-  PreparedMorph const* const blocks = PlanAccess::blocks(plan);
   // Smoothed alike in all of them, meshes between those recorded follow.
-  bool const alike = blocks != nullptr && boundaries.size() > 1;
+  bool const alike = PlanAccess::chains(plan) != nullptr && boundaries.size() > 1;
   FrozenSmoothing lost;
   if (alike)
     for (std::vector<Vec3> const& boundary : boundaries) {
       apply_on_host(morpher, boundary, plain);
-      lost.join(lost_shapes(host, *blocks, mesh.handedness(), plain));
+      lost.join(lost_shapes(host, mesh, plain));
     }
   for (std::vector<Vec3> const& boundary : boundaries) {
     apply_on_host(morpher, boundary, plain);
     Coordinates guarded = copy_of(plain);
     if (alike)
-      (void)smooth_frozen(host, *blocks, mesh.handedness(), guarded, lost);
+      (void)smooth_frozen(host, mesh, plan, guarded, lost);
     else
       (void)guard(host, mesh, plan, guarded);
     record.add(boundary, plain, guarded);

@@ -1,6 +1,7 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/morph/best_order.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/common_parts.hpp>
 
@@ -236,6 +237,11 @@ Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepar
   int const every = close_sample(prepared.mesh);
   if (some.all.inverted > 0 || some.every <= every || !(some.all.kept.value < little)) return some;
   return Predictor(host, prepared, {.every = every}).predict(boundary);
+}
+
+Prediction predict_closely(HostInstance const& host, MorphPlan const& plan, std::span<Vec3 const> boundary,
+                           Prediction const& some) {
+  return predict_closely(host, *PlanAccess::blocks(plan), boundary, some);
 }
 
 bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,

@@ -38,6 +38,10 @@ FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& pre
 Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
                            Prediction const& some);
 
+/// plan: of blocks.
+Prediction predict_closely(HostInstance const& host, MorphPlan const& plan, std::span<Vec3 const> boundary,
+                           Prediction const& some);
+
 /// Whether no boundary node is displaced.
 bool is_at_rest(std::span<Vec3 const> boundary);
 

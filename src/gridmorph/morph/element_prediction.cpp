@@ -1,6 +1,8 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/element_quality.hpp>
 #include <gridmorph/morph/element_prediction.hpp>
+#include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
@@ -141,6 +143,12 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     return a.elements.kept.value < b.elements.kept.value;
   });
   return out;
+}
+
+ElementPrediction predict(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
+                          Coordinates const& displaced, std::span<signed char const> signs,
+                          ElementPredictionOptions const& options) {
+  return predict(host, mesh, *PlanAccess::elements(plan), displaced, signs, options);
 }
 
 }  // namespace gridmorph

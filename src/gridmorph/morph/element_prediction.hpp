@@ -1,13 +1,17 @@
 // What a plan makes of elements, of some of them, before anything is smoothed: prediction.hpp for unstructured meshes.
 #pragma once
 
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/core/host_instance.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 
 #include <span>
 #include <string>
 #include <vector>
 
 namespace gridmorph {
+
+class MorphPlan;
+struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 
 struct ElementPredictionOptions {
   /// One element in so many, in the order of the mesh (along a Hilbert curve), is looked at; 1: all. 0: the smallest
@@ -52,6 +56,10 @@ struct ElementPrediction {
 /// numbering_signs() of the mesh. Cost: one pass over the elements for their relative displacements (100 flops each),
 /// two sets of measures for those looked at. The same for any number of threads. Fences.
 ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUnstructured const& prepared,
+                          Coordinates const& displaced, std::span<signed char const> signs,
+                          ElementPredictionOptions const& options = {});
+/// plan: of elements.
+ElementPrediction predict(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
                           Coordinates const& displaced, std::span<signed char const> signs,
                           ElementPredictionOptions const& options = {});
 

@@ -186,6 +186,10 @@ std::vector<Index> MorphPlan::boundary_nodes() const {
   return {known.begin(), known.end()};
 }
 
+Index MorphPlan::n_boundary_nodes() const {
+  return Index(state_->blocks ? state_->blocks->plan().boundary_nodes.size() : state_->elements->plan.known.size());
+}
+
 std::vector<BoundaryPlace> MorphPlan::boundary_places() const {
   auto const& blocks = state_->blocks;
   auto const& elements = state_->elements;
@@ -256,15 +260,12 @@ NearCells MorphPlan::near_cells() const {
 }
 
 std::vector<Trim> MorphPlan::trims(std::vector<Vec3> const& boundary) const {
-  if (state_->elements) return gridmorph::trims(state_->elements->boundary, boundary);
-  PreparedMorph const& blocks = *state_->blocks;
-  return gridmorph::trims(blocks.plan(), blocks.planned.boundary, blocks.surface, boundary);
+  return PlanAccess::trims(*this, boundary, rules());
 }
 
 std::vector<Trim> MorphPlan::trims(std::vector<Vec3> const& boundary, Motion const& motion) const {
-  if (state_->elements) return gridmorph::trims(state_->elements->boundary, boundary);
-  PreparedMorph const& blocks = *state_->blocks;
-  return gridmorph::trims(blocks.plan(), blocks.planned.boundary, blocks.surface.with(motion), boundary);
+  if (state_->elements) return trims(boundary);
+  return PlanAccess::trims(*this, boundary, state_->blocks->surface.with(motion));
 }
 
 std::vector<PlanSeconds> MorphPlan::seconds() const {

@@ -79,6 +79,7 @@ class MorphPlan {
   [[nodiscard]] Index n_nodes() const;
   /// Nodes whose displacement a morph is given, in the order that it expects.
   [[nodiscard]] std::vector<Index> boundary_nodes() const;
+  [[nodiscard]] Index n_boundary_nodes() const;
   /// Where they lie: one entry for each patch that has the node and an explicit rule, ascending by node. With
   /// PrescribedRule this says which of a solver's surface values go where. Cost O(boundary nodes, log).
   [[nodiscard]] std::vector<BoundaryPlace> boundary_places() const;

@@ -4,6 +4,7 @@
 #include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 
 #include <algorithm>
@@ -56,6 +57,9 @@ Predictor::Predictor(HostInstance const& host, PreparedMorph const& prepared, Pr
         Mesh const& mesh = planner_.coarse().mesh;
         return zone_handedness(exec, mesh, views(mesh.coordinates));
       })) {}
+
+WorstPrediction::WorstPrediction(HostInstance const& host, MorphPlan const& plan)
+    : WorstPrediction(host, *PlanAccess::blocks(plan)) {}
 
 Prediction Predictor::predict(std::span<Vec3 const> boundary) {
   Plan const plan = planner_.plan(prepared_.planned.order).plan;

@@ -45,6 +45,8 @@ inline constexpr int most_predicted = 100;
 class WorstPrediction {
  public:
   WorstPrediction(HostInstance const& host, PreparedMorph const& prepared) : predictor_(host, prepared, {}) {}
+  /// plan: of blocks.
+  WorstPrediction(HostInstance const& host, MorphPlan const& plan);
 
   /// boundary: displacements of Plan::boundary_nodes at that step.
   void look_at(int step, std::vector<Vec3> boundary) {

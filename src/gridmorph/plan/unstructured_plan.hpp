@@ -10,13 +10,11 @@
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/common_motion.hpp>
-#include <gridmorph/plan/elements/background.hpp>
-#include <gridmorph/plan/elements/classify.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
-#include <gridmorph/plan/elements/wrap.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 #include <gridmorph/plan/layers.hpp>
 #include <gridmorph/plan/options.hpp>
+#include <gridmorph/plan/planned_elements.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <array>
@@ -158,24 +156,6 @@ struct UnstructuredPlan {
     CsrGraph images_of_owner;  ///< entries of `images`
     JointNodes joint;
   } middle_boundary;
-};
-
-/// What was found on the way, for reports and pictures.
-struct UnstructuredReport {
-  double layer_height = 0;  ///< of the highest column
-  Index n_columns = 0;
-  double offset = 0;
-  std::optional<Wrap> wrap;
-  Classification regions;
-  std::vector<int> layer;                  ///< (n_nodes) 0 on moving walls and in columns, -1 in the far field
-  Index wrap_nodes = 0, wrap_outside = 0;  ///< of the wrap's nodes, those outside all elements
-  double wrap_distance = 0;                ///< largest distance of those
-  Index far_nodes = 0, far_outside = 0;
-  Index unreached = 0;  ///< near nodes that no chain of edges joins to a moving wall
-  Index n_layers = 0;
-  struct Seconds {
-    double boundary = 0, columns = 0, distances = 0, wrap = 0, layers = 0, background = 0, location = 0, residual = 0;
-  } seconds{};
 };
 
 struct PreparedUnstructured {

@@ -10,8 +10,7 @@
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
-#include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/plan/planned_elements.hpp>
 #include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
@@ -109,8 +108,8 @@ CasePlan::CasePlan(LoadedMesh const& mesh, CaseFile const& case_file)
 }
 
 Mesh const& CasePlan::patched() const {
-  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
-  return blocks != nullptr ? blocks->mesh : mesh_.mesh();
+  Mesh const* const patched = PlanAccess::patched_mesh(plan_);
+  return patched != nullptr ? *patched : mesh_.mesh();
 }
 
 std::vector<Vec3> CasePlan::displacement(Moment const* when) {
@@ -157,13 +156,12 @@ void CasePlan::morph(std::vector<Vec3> const& displacement, Coordinates& morphed
 
 GuardReport CasePlan::relax(Coordinates& morphed) const {
   if (!frozen_) return guard(exec_, mesh_.indexed(), plan_, morphed);
-  return report_of(smooth_frozen(exec_, *PlanAccess::blocks(plan_), mesh_.indexed().handedness(), morphed, *frozen_));
+  return report_of(smooth_frozen(exec_, mesh_.indexed(), plan_, morphed, *frozen_));
 }
 
 void CasePlan::freeze(Coordinates const& morphed) {
-  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
-  if (blocks == nullptr) return;
-  FrozenSmoothing const lost = lost_shapes(exec_, *blocks, mesh_.indexed().handedness(), morphed);
+  if (!mesh_.is_structured()) return;
+  FrozenSmoothing const lost = lost_shapes(exec_, mesh_.indexed(), morphed);
   if (!frozen_) frozen_.emplace();
   frozen_->join(lost);
 }
@@ -210,7 +208,7 @@ PlanOutcome CasePlan::outcome(Coordinates const& morphed, bool verdict, bool at_
 /// The smallest determinant of each stage of blocks.
 nlohmann::json CasePlan::judge_stages(Coordinates const& morphed, std::string& text) const {
   nlohmann::json out = nlohmann::json::array();
-  for (auto const& stage : PlanAccess::blocks(plan_)->plan().stages) {
+  for (auto const& stage : PlanAccess::chains(plan_)->stages) {
     CellValue const worst =
         min_determinant(exec_, mesh_.mesh(), views(morphed), mesh_.indexed().handedness(), stage.cells);
     nlohmann::json json{{"name", stage.name}, {"min_determinant", nullptr}};
@@ -228,10 +226,10 @@ nlohmann::json CasePlan::judge_stages(Coordinates const& morphed, std::string& t
 
 void CasePlan::write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
                             Coordinates const& morphed) const {
-  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_))
-    write_block_stages(folder, mesh_.mesh(), blocks->plan(), displacement, morphed);
+  if (auto const elements = PlanAccess::planned_elements(plan_))
+    write_element_stages(folder, mesh_.mesh(), *elements, *morpher_, morphed);
   else
-    write_element_stages(folder, mesh_.mesh(), *PlanAccess::elements(plan_), *morpher_, morphed);
+    write_block_stages(folder, mesh_.mesh(), *PlanAccess::chains(plan_), displacement, morphed);
 }
 
 std::vector<std::string> CasePlan::notes() const {
@@ -260,10 +258,10 @@ PlanPrediction CasePlan::predict() {
     Moment const when = case_file_.sequence->moment(step);
     return displacement(&when);
   };
-  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) {
-    WorstPrediction worst(exec_, *blocks);
+  if (mesh_.is_structured()) {
+    WorstPrediction worst(exec_, plan_);
     for (int const step : steps) worst.look_at(step, displacement_at(step));
-    Prediction const closely = predict_closely(exec_, *blocks, worst.boundary(), worst.prediction());
+    Prediction const closely = predict_closely(exec_, plan_, worst.boundary(), worst.prediction());
     return of_step(
         {describe(patched(), closely), prediction_warnings(patched(), closely), prediction_json(patched(), closely)},
         worst.step());
@@ -273,8 +271,7 @@ PlanPrediction CasePlan::predict() {
   Coordinates displaced(mesh_.n_nodes());
   for (int const step : steps) {
     morph(displacement_at(step), displaced, nullptr);
-    ElementPrediction now =
-        gridmorph::predict(exec_, mesh_.mesh(), *PlanAccess::elements(plan_), displaced, mesh_.indexed().signs());
+    ElementPrediction now = gridmorph::predict(exec_, mesh_.mesh(), plan_, displaced, mesh_.indexed().signs());
     if (step > 0 && !(now.all.kept.value < worst.all.kept.value)) continue;
     worst = std::move(now);
     worst_step = step;
@@ -301,23 +298,19 @@ std::string CasePlan::text(bool all) const {
   for (auto const& note : notes()) text += "note: " + note + "\n";
   if (!mesh_.is_structured()) return text + headline();
   if (!text.empty()) text += "\n";
-  return text + block_plan_text(PlanAccess::blocks(plan_)->plan(), all);
+  return text + block_plan_text(*PlanAccess::chains(plan_), all);
 }
 
 nlohmann::json CasePlan::json() const {
-  if (PreparedMorph const* const blocks = PlanAccess::blocks(plan_)) return block_plan_json(blocks->plan());
-  return element_plan_json(*PlanAccess::elements(plan_), mesh_.n_cells());
+  if (auto const elements = PlanAccess::planned_elements(plan_)) return element_plan_json(*elements, mesh_.n_cells());
+  return block_plan_json(*PlanAccess::chains(plan_));
 }
 
-std::optional<BlockGraph> CasePlan::graph() const {
-  PreparedMorph const* const blocks = PlanAccess::blocks(plan_);
-  if (blocks == nullptr) return {};
-  return block_graph(*blocks);
-}
+std::optional<BlockGraph> CasePlan::graph() const { return PlanAccess::block_graph(plan_); }
 
 std::string CasePlan::headline() const {
-  PreparedUnstructured const* const elements = PlanAccess::elements(plan_);
-  return elements == nullptr ? std::string() : element_plan_text(*elements);
+  auto const elements = PlanAccess::planned_elements(plan_);
+  return elements ? element_plan_text(*elements) : std::string();
 }
 
 MeshForMessages CasePlan::for_messages() const {

@@ -31,14 +31,6 @@ nlohmann::json block_plan_json(Plan const& plan) {
   return {{"stages", std::move(list)}};
 }
 
-std::vector<PlannedPart> planned_parts(PreparedUnstructured const& prepared) {
-  if (prepared.plan.parts.empty()) return {{prepared.report, prepared.plan, 0}};
-  std::vector<PlannedPart> out;
-  for (std::size_t n = 0; n < prepared.plan.parts.size(); ++n)
-    out.push_back({prepared.part_reports[n], *prepared.plan.parts[n].plan, n});
-  return out;
-}
-
 namespace {
 
 /// What the background mesh fills.
@@ -60,7 +52,8 @@ std::string shape(UnstructuredReport const& r) {
   return text;
 }
 
-nlohmann::json part_json(UnstructuredReport const& r, UnstructuredPlan const& p) {
+nlohmann::json part_json(PlannedPart const& p) {
+  UnstructuredReport const& r = p.report;
   return {
       {"offset", r.offset},
       {"columns", r.n_columns},
@@ -88,7 +81,8 @@ nlohmann::json part_json(UnstructuredReport const& r, UnstructuredPlan const& p)
         {"residual", r.seconds.residual}}}};
 }
 
-std::string part_headline(UnstructuredReport const& r, UnstructuredPlan const& p) {
+std::string part_headline(PlannedPart const& p) {
+  UnstructuredReport const& r = p.report;
   std::string text = fmt::format(
       "near field: {}, {} columns up to {:.4g} high, {} near elements, {} partially wrapped, {} far; {} layers\n",
       r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,
@@ -103,20 +97,20 @@ std::string part_headline(UnstructuredReport const& r, UnstructuredPlan const& p
 
 }  // namespace
 
-std::string element_plan_text(PreparedUnstructured const& prepared) {
-  if (prepared.plan.parts.empty()) return part_headline(prepared.report, prepared.plan);
+std::string element_plan_text(PlannedElements const& planned) {
+  if (planned.parts.empty()) return part_headline(planned.whole);
   std::string text;
   Index at_rest = 0, n_at_rest = 0;
-  for (PlannedPart const& part : planned_parts(prepared)) {
-    bool const common = prepared.plan.parts[part.number].common.has_value();
-    if (part.plan.driving.empty() && !common) {
+  for (PlannedPart const& part : planned.parts) {
+    bool const common = part.has_common_motion;
+    if (!part.has_moving_walls && !common) {
       ++at_rest;
-      n_at_rest += part.plan.n_nodes;
+      n_at_rest += part.n_nodes;
       continue;
     }
-    text += fmt::format("part {} of {}, {} nodes{}\n", part.number + 1, prepared.plan.parts.size(), part.plan.n_nodes,
+    text += fmt::format("part {} of {}, {} nodes{}\n", part.number + 1, planned.parts.size(), part.n_nodes,
                         common ? ": the motion that its boundaries have in common, and what is left of theirs" : "");
-    if (!part.plan.driving.empty()) text += part_headline(part.report, part.plan);
+    if (part.has_moving_walls) text += part_headline(part);
   }
   if (at_rest > 0)
     text += fmt::format("{} part{} without moving walls, {} nodes: the motions of other boundaries alone\n", at_rest,
@@ -124,14 +118,14 @@ std::string element_plan_text(PreparedUnstructured const& prepared) {
   return text;
 }
 
-nlohmann::json element_plan_json(PreparedUnstructured const& prepared, Index n_elements) {
-  nlohmann::json plan = part_json(prepared.report, prepared.plan);
-  if (!prepared.plan.parts.empty()) {
+nlohmann::json element_plan_json(PlannedElements const& planned, Index n_elements) {
+  nlohmann::json plan = part_json(planned.whole);
+  if (!planned.parts.empty()) {
     nlohmann::json parts = nlohmann::json::array();
-    for (PlannedPart const& part : planned_parts(prepared)) {
-      parts.push_back(part_json(part.report, part.plan));
-      parts.back()["nodes"] = part.plan.n_nodes;
-      parts.back()["common_motion"] = prepared.plan.parts[part.number].common.has_value();
+    for (PlannedPart const& part : planned.parts) {
+      parts.push_back(part_json(part));
+      parts.back()["nodes"] = part.n_nodes;
+      parts.back()["common_motion"] = part.has_common_motion;
     }
     plan["parts"] = std::move(parts);
   }

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <gridmorph/plan/plan.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/plan/planned_elements.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <string>
-#include <vector>
 
 namespace gridmorph::cli {
 
@@ -18,16 +17,7 @@ std::string block_plan_text(Plan const& plan, bool all);
 nlohmann::json block_plan_json(Plan const& plan);
 
 /// One line or two: near field and background mesh, of each part with moving walls.
-std::string element_plan_text(PreparedUnstructured const& prepared);
-nlohmann::json element_plan_json(PreparedUnstructured const& prepared, Index n_elements);
-
-/// A plan of elements without parts, with what was found on the way.
-struct PlannedPart {
-  UnstructuredReport const& report;
-  UnstructuredPlan const& plan;
-  std::size_t number;
-};
-/// The parts of a plan, or the plan itself where it has none.
-std::vector<PlannedPart> planned_parts(PreparedUnstructured const& prepared);
+std::string element_plan_text(PlannedElements const& planned);
+nlohmann::json element_plan_json(PlannedElements const& planned, Index n_elements);
 
 }  // namespace gridmorph::cli

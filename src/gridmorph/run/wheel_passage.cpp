@@ -6,8 +6,7 @@
 #include <gridmorph/mesh/repeated_elements.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/plan_access.hpp>
-#include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/plan/guarded_elements.hpp>
 #include <gridmorph/run/wheel_passage.hpp>
 
 #include <algorithm>
@@ -73,12 +72,11 @@ GuardReport PassagePlan::relax(Coordinates& morphed) const {
   if (!mesh_.is_structured()) return guard({}, mesh_.indexed(), motion_.plan(), morphed);
   GuardReport out;
   if (!smooth_) return out;
-  PreparedMorph const& blocks = *PlanAccess::blocks(motion_.plan());
-  std::vector<int> const& handedness = mesh_.indexed().handedness();
+  MorphPlan const& plan = motion_.plan();
   for (WheelRow const& row : rows_.rows) {
     ShapeSmoothingOptions const of_row{.zones = row.zones};
-    GuardReport const own = report_of(frozen_ ? smooth_frozen({}, blocks, handedness, morphed, *frozen_, of_row)
-                                              : smooth_shapes({}, blocks, handedness, morphed, of_row));
+    GuardReport const own = report_of(frozen_ ? smooth_frozen({}, mesh_.indexed(), plan, morphed, *frozen_, of_row)
+                                              : smooth_shapes({}, mesh_.indexed(), plan, morphed, of_row));
     out.before += own.before;
     out.after += own.after;
     out.rounds = std::max(out.rounds, own.rounds);
@@ -90,7 +88,7 @@ GuardReport PassagePlan::relax(Coordinates& morphed) const {
 
 void PassagePlan::freeze(Coordinates const& morphed) {
   if (!frozen_) frozen_.emplace();
-  frozen_->join(lost_shapes({}, *PlanAccess::blocks(motion_.plan()), mesh_.indexed().handedness(), morphed));
+  frozen_->join(lost_shapes({}, mesh_.indexed(), morphed));
 }
 
 void PassagePlan::record(std::vector<Vec3> const& boundary, Coordinates const& plain, Coordinates const& guarded) {
@@ -111,7 +109,7 @@ std::vector<int> PassagePlan::part_of_nodes() const {
   auto const row_of = [&](Index n) { return rows_.row_of_zone[std::size_t(mesh_.mesh().zone_of(n))]; };
   std::vector<int> out;
   for (Index n = 0; n < mesh_.n_nodes(); ++n) out.push_back(row_of(n));
-  if (PreparedUnstructured const* const elements = PlanAccess::elements(motion_.plan()))
+  if (auto const elements = PlanAccess::guarded_elements(motion_.plan()))
     for (std::size_t n = 0; n < out.size(); ++n)
       parts.join(out[n], out[std::size_t(elements->graph.representative[n])]);
   for (int& part : out) part = parts.root(part);

@@ -3,8 +3,7 @@
 #include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/morph/plan_access.hpp>
-#include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/plan/make_plan.hpp>
 #include <gridmorph/wheel/detail/append_notes.hpp>
 #include <gridmorph/wheel/open_passage.hpp>
 
@@ -83,8 +82,7 @@ void WheelMotion::plan_blocks(Asked const& asked) {
   // Where nothing was opened the plan has the rules themselves: guards look for periodic sides that follow a blade.
   if (std::none_of(asked.open.begin(), asked.open.end(), [](char open) { return open != 0; }))
     surface = rules_.at(same_rules_[used_.front()])->with(asked.motions[std::size_t(used_.front())]);
-  plan_ = PlanAccess::of(
-      PreparedMorph{std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), {}, asked.options});
+  plan_ = PlanAccess::of(std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), asked.options);
 
   auto const nodes = plan_->boundary_nodes();
   add_passages(asked, nodes,
@@ -114,10 +112,9 @@ void WheelMotion::plan_elements(Asked const& asked) {
                    [&](Index n) { return Index(graph.representative[std::size_t(n)]); }, requests_, known));
 
   auto most = largest_of(asked, options);
-  PreparedUnstructured prepared = prepare({}, sector, sector_.topology(), sector_.face_patches(), std::move(graph),
-                                          std::move(conditions), options, std::move(most));
-  detail::append_notes(notes_, prepared.notes);
-  plan_ = PlanAccess::of(std::move(prepared));
+  plan_ = PlanAccess::of(sector, sector_.topology(), sector_.face_patches(), std::move(graph), std::move(conditions),
+                         options, std::move(most));
+  detail::append_notes(notes_, plan_->notes());
 }
 
 std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, PlanOptions& options) const {
@@ -150,10 +147,8 @@ std::vector<Vec3> WheelMotion::displacement(int m, Motion const& motion) const {
 }
 
 std::vector<Trim> WheelMotion::trims(std::vector<Vec3> const& boundary) const {
-  PreparedMorph const* const blocks = PlanAccess::blocks(*plan_);
-  if (blocks == nullptr) return plan_->trims(boundary);
   // In words of the rules: those of a plan that was opened give no values.
-  return gridmorph::trims(blocks->plan(), requests_, *rules_.at(same_rules_[used_.front()]), boundary);
+  return PlanAccess::trims(*plan_, boundary, *rules_.at(same_rules_[used_.front()]));
 }
 
 }  // namespace gridmorph

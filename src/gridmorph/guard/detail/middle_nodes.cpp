@@ -42,22 +42,21 @@ Vec3 mean_of_corners(Mesh const& mesh, Index32 element, int at, Coordinates cons
 
 }  // namespace
 
-MiddleNodes::MiddleNodes(Mesh const& mesh, PreparedUnstructured const& prepared,
-                         ElementTables<Kokkos::HostSpace> const& tables, std::vector<signed char> const& signs)
-    : mesh_(mesh), plan_(prepared.plan), graph_(prepared.graph), tables_(tables), signs_(signs) {
+MiddleNodes::MiddleNodes(Mesh const& mesh, GuardedElements const& plan, ElementTables<Kokkos::HostSpace> const& tables,
+                         std::vector<signed char> const& signs)
+    : mesh_(mesh), plan_(plan), tables_(tables), signs_(signs) {
   auto const rows = std::size_t(plan_.middle.size());
   std::vector<Index32> row_of_node(std::size_t(mesh.n_nodes()), -1);
   for (std::size_t r = 0; r < rows; ++r) row_of_node[std::size_t(plan_.middle.target[r])] = Index32(r);
   row_of_.resize(std::size_t(mesh.n_nodes()));
-  for (std::size_t n = 0; n < row_of_.size(); ++n) row_of_[n] = row_of_node[std::size_t(graph_.representative[n])];
+  for (std::size_t n = 0; n < row_of_.size(); ++n) row_of_[n] = row_of_node[std::size_t(plan_.graph.representative[n])];
   margin_before_.assign(std::size_t(mesh.n_elements()), std::numeric_limits<double>::quiet_NaN());
   movable_.assign(rows, 1);
   slides_.assign(rows, -1);
-  auto const& at = plan_.middle_boundary;
-  for (std::size_t k = 0; k < at.node.size(); ++k) {
-    Index32 const row = row_of_node[std::size_t(at.node[k])];
+  for (std::size_t k = 0; k < plan_.middle_on_boundary.size(); ++k) {
+    Index32 const row = row_of_node[std::size_t(plan_.middle_on_boundary[k])];
     if (row < 0) continue;
-    if (at.slot[k] >= 0)
+    if (plan_.middle_slots[k] >= 0)
       movable_[std::size_t(row)] = 0;
     else
       slides_[std::size_t(row)] = Index32(k);
@@ -150,7 +149,7 @@ std::vector<Index32> MiddleNodes::elements_of(std::vector<Index32> const& rows) 
 Vec3 MiddleNodes::on_surfaces(Index32 row, Vec3 const& place) const {
   Index32 const k = slides_[std::size_t(row)];
   if (k < 0) return place;
-  auto const surfaces = plan_.middle_boundary.surfaces[k];
+  auto const surfaces = plan_.middle_surfaces[k];
   Vec3 const baseline = mesh_.coordinates[plan_.middle.target[std::size_t(row)]];
   auto const surface = [&](int m) { return plan_.surfaces[std::size_t(surfaces[std::size_t(m)])].view(); };
   Vec3 u = place - baseline, unused;

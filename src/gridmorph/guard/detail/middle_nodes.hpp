@@ -3,7 +3,7 @@
 
 #include <gridmorph/core/csr_graph.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
-#include <gridmorph/plan/unstructured_plan.hpp>
+#include <gridmorph/plan/guarded_elements.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <span>
@@ -17,7 +17,7 @@ namespace gridmorph::detail {
 class MiddleNodes {
  public:
   /// signs: numbering_signs(). All that is given must outlive it.
-  MiddleNodes(Mesh const& mesh, PreparedUnstructured const& prepared, ElementTables<Kokkos::HostSpace> const& tables,
+  MiddleNodes(Mesh const& mesh, GuardedElements const& plan, ElementTables<Kokkos::HostSpace> const& tables,
               std::vector<signed char> const& signs);
 
   /// An element is broken by its middles when its margin (kernels/curved_margin.hpp) has fallen below `share` of the
@@ -27,7 +27,7 @@ class MiddleNodes {
   /// where their edges put them, off by as much as opposite faces are; else, where that does not do, straight: no
   /// offsets. Then nodes of broken elements go an eighth of the way after the other, until none is broken or all went
   /// the whole way. What leaves more invalid or, as many, more broken ones, or as many with a smaller smallest margin,
-  /// is taken back. Returns the rows of UnstructuredPlan::middle that moved, ascending. Explicit; the same bits for any
+  /// is taken back. Returns the rows of GuardedElements::middle that moved, ascending. Explicit; the same bits for any
   /// number of threads. Cost: two margins per suspect, up to 10 for each element around.
   std::vector<Index> pull(std::vector<Index32> const& suspects, double share, Coordinates& x);
 
@@ -67,8 +67,7 @@ class MiddleNodes {
                std::vector<Index32>& touched, Coordinates& x);
 
   Mesh const& mesh_;
-  UnstructuredPlan const& plan_;
-  NodeGraph const& graph_;
+  GuardedElements const& plan_;
   ElementTables<Kokkos::HostSpace> const& tables_;
   std::vector<signed char> const& signs_;
   std::vector<Index32> row_of_;        ///< (nodes) of what represents them, or -1
@@ -76,7 +75,7 @@ class MiddleNodes {
   std::vector<Place> places_;          ///< row after row
   std::vector<Index> first_place_;     ///< (rows + 1)
   CsrGraph copies_;                    ///< (rows) nodes that coincide with a row's
-  std::vector<Index32> slides_;        ///< (rows) entry of UnstructuredPlan::middle_boundary, or -1
+  std::vector<Index32> slides_;        ///< (rows) entry of GuardedElements::middle_on_boundary, or -1
   std::vector<double> margin_before_;  ///< (elements) in the baseline; NaN where nobody asked yet
 };
 

@@ -8,14 +8,12 @@ namespace {
 
 class RegionBuilder {
  public:
-  RegionBuilder(HostInstance const& host, PreparedMorph const& prepared, BlockCells const& mesh_cells,
-                BlockPoints& points)
+  RegionBuilder(HostInstance const& host, BlockCells const& mesh_cells, BlockPoints& points)
       : host_(host),
-        prepared_(prepared),
         mesh_cells_(mesh_cells),
         points_(points),
         local_(std::size_t(mesh_cells.size()), outside),
-        point_(std::size_t(prepared.plan().n_nodes), outside) {}
+        point_(std::size_t(points.baseline().size()), outside) {}
 
   ShapeRegion build(std::span<Index const> cells, int rings) {
     grow(cells, rings);
@@ -63,7 +61,7 @@ class RegionBuilder {
 
   /// Ends of edges without length are several nodes at one place that no interface names.
   void keep_collapsed() {
-    Coordinates const& x = prepared_.mesh.coordinates;
+    Coordinates const& x = points_.baseline();
     for (Index const node : reached_)
       mesh_cells_.around(node, [&](Index cell, int corner) {
         CellNodes const nodes = mesh_cells_.nodes(cell);
@@ -80,7 +78,7 @@ class RegionBuilder {
   void add_point(Index node) {
     std::vector<PointNode> nodes;
     points_.for_each_node(node, [&](PointNode const& n) { nodes.push_back(n); });
-    auto const slide = sliding_point(prepared_, points_, nodes);
+    auto const slide = points_.sliding(nodes);
     auto const corners = slide ? changed_corners(nodes) : std::nullopt;
     if (!corners) {
       points_.keep(node);
@@ -141,7 +139,7 @@ class RegionBuilder {
     for_all(host_, "gridmorph::shape_smoothing::baseline", Index(region_.cells.size()), [this](Index n) {
       for (int c = 0; c < 8; ++c) {
         Vec3 edge[3];
-        corner_edges(prepared_.mesh.coordinates, region_.cells[std::size_t(n)], c, edge);
+        corner_edges(points_.baseline(), region_.cells[std::size_t(n)], c, edge);
         region_.corners[std::size_t(n)][std::size_t(c)] = kernels::BaselineCorner::of(edge);
       }
     });
@@ -171,7 +169,6 @@ class RegionBuilder {
   }
 
   HostInstance const& host_;
-  PreparedMorph const& prepared_;
   BlockCells const& mesh_cells_;
   BlockPoints& points_;
   std::vector<Index32> local_, point_;  ///< number in the region, per cell and per node
@@ -181,9 +178,9 @@ class RegionBuilder {
 
 }  // namespace
 
-ShapeRegion shape_region(HostInstance const& host, PreparedMorph const& prepared, BlockCells const& mesh_cells,
-                         BlockPoints& points, std::span<Index const> cells, int rings) {
-  return RegionBuilder(host, prepared, mesh_cells, points).build(cells, rings);
+ShapeRegion shape_region(HostInstance const& host, BlockCells const& mesh_cells, BlockPoints& points,
+                         std::span<Index const> cells, int rings) {
+  return RegionBuilder(host, mesh_cells, points).build(cells, rings);
 }
 
 }  // namespace gridmorph::detail

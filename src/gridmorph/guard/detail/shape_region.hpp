@@ -2,8 +2,9 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/guard/detail/block_points.hpp>
+#include <gridmorph/guard/detail/block_cells.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
+#include <gridmorph/plan/block_points.hpp>
 
 #include <array>
 #include <span>
@@ -47,7 +48,7 @@ struct ShapeRegion {
 /// `rings` of cells around `cells`, through interfaces. `points`: learns which points stay because edges at them are
 /// collapsed, or because they are twice in a cell through a rotation. Points are in the order of their smallest nodes;
 /// colours are greedy in that order. Cost: O(region) and two numbers per cell and node of the mesh.
-ShapeRegion shape_region(HostInstance const& host, PreparedMorph const& prepared, BlockCells const& mesh_cells,
-                         BlockPoints& points, std::span<Index const> cells, int rings);
+ShapeRegion shape_region(HostInstance const& host, BlockCells const& mesh_cells, BlockPoints& points,
+                         std::span<Index const> cells, int rings);
 
 }  // namespace gridmorph::detail

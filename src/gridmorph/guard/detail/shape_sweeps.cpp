@@ -11,9 +11,9 @@ using kernels::CornerChange;
 
 class Sweeps {
  public:
-  Sweeps(PreparedMorph const& prepared, ShapeRegion const& region, Coordinates const& x)
-      : prepared_(prepared), baseline_(prepared.mesh.coordinates), region_(region), x_(x) {
-    for (SlipSurface const& surface : prepared.surface.slip_surfaces()) surfaces_.push_back(surface.view());
+  Sweeps(BlockPoints const& points, ShapeRegion const& region, Coordinates const& x)
+      : points_(points), baseline_(points.baseline()), region_(region), x_(x) {
+    for (SlipSurface const& surface : points.slip_surfaces()) surfaces_.push_back(surface.view());
   }
 
   /// How the corners of a point change with its displacement.
@@ -62,9 +62,7 @@ class Sweeps {
   }
 
  private:
-  [[nodiscard]] Mat3 const& rotation(std::int32_t matrix) const {
-    return prepared_.plan().rotations[std::size_t(matrix)];
-  }
+  [[nodiscard]] Mat3 const& rotation(std::int32_t matrix) const { return points_.rotation(matrix); }
   [[nodiscard]] Vec3 to_node(std::int32_t matrix, Vec3 const& v) const { return matrix < 0 ? v : rotation(matrix) * v; }
   [[nodiscard]] Vec3 to_point(std::int32_t matrix, Vec3 const& v) const {
     return matrix < 0 ? v : transpose(rotation(matrix)) * v;
@@ -109,7 +107,7 @@ class Sweeps {
     return surfaces_[std::size_t(slide.surface[std::size_t(m)])];
   }
 
-  PreparedMorph const& prepared_;
+  BlockPoints const& points_;
   Coordinates const& baseline_;
   ShapeRegion const& region_;
   Coordinates x_;  ///< the same memory as the caller's
@@ -125,25 +123,16 @@ double smallest_volume(HostInstance const& host, ShapeRegion const& region, Swee
 
 }  // namespace
 
-void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
+void smooth_region(HostInstance const& host, BlockPoints const& points, ShapeRegion const& region, int sweeps,
                    double relaxation, Coordinates& x, bool gradual) {
-  Sweeps points(prepared, region, x);
+  Sweeps all(points, region, x);
   UntanglingSchedule schedule(sweeps, gradual);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    double const delta = schedule.delta(sweep, [&] { return smallest_volume(host, region, points); });
+    double const delta = schedule.delta(sweep, [&] { return smallest_volume(host, region, all); });
     for (std::vector<Index32> const& colour : region.colours)
       sweep_colour(host, "gridmorph::shape_smoothing::sweep", colour,
-                   [&](Index32 point, auto& corners) { points.move(point, delta, relaxation, corners); });
+                   [&](Index32 point, auto& corners) { all.move(point, delta, relaxation, corners); });
   }
-}
-
-kernels::ShapeSum shape_sum(PreparedMorph const& prepared, ShapeRegion const& region, Index point, double delta,
-                            Coordinates const& x) {
-  std::vector<CornerChange> corners;
-  Sweeps(prepared, region, x).changes(point, corners);
-  kernels::ShapeSum sum;
-  for (CornerChange const& c : corners) sum.add(c, delta);
-  return sum;
 }
 
 }  // namespace gridmorph::detail

@@ -9,11 +9,7 @@ namespace gridmorph::detail {
 /// first, halved up to six times until the sum of f over the point's corners falls, else none. delta is 0.1 times 0.6
 /// per eighth of the sweeps, as long as the smallest d of the region is below 0.02, then 0. Nodes get baseline +
 /// rotation * displacement of their point. `gradual`: delta grows evenly as d falls from 0.02 to 0 instead.
-void smooth_region(HostInstance const& host, PreparedMorph const& prepared, ShapeRegion const& region, int sweeps,
+void smooth_region(HostInstance const& host, BlockPoints const& points, ShapeRegion const& region, int sweeps,
                    double relaxation, Coordinates& x, bool gradual = false);
-
-/// Value, gradient and Hessian of the sum of f over the corners of a point, in the frame of its displacement.
-kernels::ShapeSum shape_sum(PreparedMorph const& prepared, ShapeRegion const& region, Index point, double delta,
-                            Coordinates const& x);
 
 }  // namespace gridmorph::detail

@@ -1,17 +1,14 @@
 #include <gridmorph/boundary/link_nodes.hpp>
-#include <gridmorph/guard/detail/block_points.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
+#include <gridmorph/plan/block_points.hpp>
+#include <gridmorph/plan/prepare.hpp>
 
-namespace gridmorph::detail {
+#include <algorithm>
+
+namespace gridmorph {
 
 namespace {
-
-template <class Visit>
-void for_each_node(Zone const& zone, IndexRange const& range, Visit&& visit) {
-  for (int k = range.begin[2]; k < range.end[2]; ++k)
-    for (int j = range.begin[1]; j < range.end[1]; ++j)
-      for (int i = range.begin[0]; i < range.end[0]; ++i) visit(zone.node({i, j, k}));
-}
 
 /// visit(slot, node, matrix) for all nodes of the skeleton.
 template <class Visit>
@@ -26,7 +23,11 @@ void for_each_skeleton_node(Plan const& plan, Visit&& visit) {
 }  // namespace
 
 BlockPoints::BlockPoints(PreparedMorph const& prepared)
-    : slot_(std::size_t(prepared.plan().n_nodes), -1), stays_(std::size_t(prepared.plan().n_nodes), 0) {
+    : slip_surfaces_(&prepared.surface.slip_surfaces()),
+      rotations_(&prepared.plan().rotations),
+      baseline_(prepared.mesh.coordinates),
+      slot_(std::size_t(prepared.plan().n_nodes), -1),
+      stays_(std::size_t(prepared.plan().n_nodes), 0) {
   gather(prepared.plan());
   find_slip(prepared);
   keep_given(prepared);
@@ -65,7 +66,7 @@ void BlockPoints::keep_given(PreparedMorph const& prepared) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     if (prepared.surface.slip_surface_of(int(p)) < 0)
-      detail::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index node) { keep(node); });
+      gridmorph::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index node) { keep(node); });
   }
 }
 
@@ -73,7 +74,7 @@ void BlockPoints::keep_near_field(PreparedMorph const& prepared) {
   for (CellBox const& box : prepared.plan().near_field) {
     IndexRange nodes = box.cells;
     for (int& end : nodes.end) ++end;
-    detail::for_each_node(prepared.mesh.zones[std::size_t(box.zone)], nodes, [&](Index node) { keep(node); });
+    gridmorph::for_each_node(prepared.mesh.zones[std::size_t(box.zone)], nodes, [&](Index node) { keep(node); });
   }
 }
 
@@ -94,8 +95,8 @@ void BlockPoints::find_slip(PreparedMorph const& prepared) {
     int const surface = prepared.surface.slip_surface_of(int(p));
     Patch const& patch = mesh.patches[p];
     if (surface >= 0)
-      detail::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range,
-                            [&](Index node) { slips_.emplace_back(node, surface); });
+      gridmorph::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range,
+                               [&](Index node) { slips_.emplace_back(node, surface); });
   }
   std::sort(slips_.begin(), slips_.end());
   slips_.erase(std::unique(slips_.begin(), slips_.end()), slips_.end());
@@ -109,20 +110,19 @@ std::vector<int> BlockPoints::surfaces(Index node) const {
   return out;
 }
 
-std::optional<SlidingPoint> sliding_point(PreparedMorph const& prepared, BlockPoints const& points,
-                                          std::vector<PointNode> const& nodes) {
+std::optional<SlidingPoint> BlockPoints::sliding(std::vector<PointNode> const& nodes) const {
   std::vector<int> all;
   PointNode frame = nodes.front();
   std::size_t most = 0;
   for (PointNode const& n : nodes) {
-    std::vector<int> const own = points.surfaces(n.node);
+    std::vector<int> const own = surfaces(n.node);
     if (own.size() > most) frame = n;
     most = std::max(most, own.size());
   }
   for (PointNode const& n : nodes)
-    for (int const s : points.surfaces(n.node)) {
+    for (int const s : surfaces(n.node)) {
       if (std::find(all.begin(), all.end(), s) != all.end()) continue;
-      auto const in_frame = points.surfaces(frame.node);
+      auto const in_frame = surfaces(frame.node);
       bool const known = std::find(in_frame.begin(), in_frame.end(), s) != in_frame.end();
       if (!known && n.matrix != frame.matrix) return {};
       all.push_back(s);
@@ -131,12 +131,12 @@ std::optional<SlidingPoint> sliding_point(PreparedMorph const& prepared, BlockPo
   if (all.size() > out.surface.size()) return {};
   out.node = frame;
   out.count = int(all.size());
-  Vec3 const at = prepared.mesh.coordinates[frame.node];
+  Vec3 const at = baseline_[frame.node];
   for (std::size_t m = 0; m < all.size(); ++m) {
     out.surface[m] = all[m];
-    out.own_offset[m] = prepared.surface.slip_surfaces()[std::size_t(all[m])].view().own_offset(at);
+    out.own_offset[m] = (*slip_surfaces_)[std::size_t(all[m])].view().own_offset(at);
   }
   return out;
 }
 
-}  // namespace gridmorph::detail
+}  // namespace gridmorph
