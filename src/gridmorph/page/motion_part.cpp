@@ -28,13 +28,13 @@ std::string motion_part(ReportPage const& page) {
     for (Figure const& f : page.surfaces) out += figure(f.body, f.caption);
     out += "</div>\n" + scale_of_displacement(page.scale_end);
   }
-  if (page.report.contains("wheel")) {
+  if (page.report.contains("passages")) {
     std::string const step =
         page.report.contains("sequence")
             ? fmt::format(" at step {}, the worst one", page.report["sequence"]["worst_step"].get<Index>())
             : std::string();
     return out + fmt::format("<p>Passage {}, the worst one{}, where its mesh file has it.</p>\n</section>\n",
-                             page.report["wheel"]["worst_passage"].get<Index>(), step);
+                             page.report["worst_passage"].get<Index>(), step);
   }
   Table table({{"rule"}, {"patches"}, {"from"}, {"nodes", true}, {"largest displacement", true}, {"mean", true}});
   for (RuleRow const& row : page.rules)

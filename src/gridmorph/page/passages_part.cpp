@@ -74,12 +74,12 @@ std::string passages_over_time(json const& sequence, json const& passages) {
 }  // namespace
 
 std::string passages_part(ReportPage const& page) {
-  if (!page.report.contains("wheel")) return {};
-  json const& wheel = page.report["wheel"];
-  auto const worst = wheel["worst_passage"].get<std::size_t>();
-  std::string out = fmt::format("<section id=\"passages\"><h2>The {} passages</h2>\n", wheel["passages"].size());
+  if (!page.report.contains("passages")) return {};
+  json const& passages = page.report["passages"];
+  auto const worst = page.report["worst_passage"].get<std::size_t>();
+  std::string out = fmt::format("<section id=\"passages\"><h2>The {} passages</h2>\n", passages.size());
   if (page.report.contains("sequence"))
-    out += passages_over_time(page.report["sequence"], wheel["passages"]) +
+    out += passages_over_time(page.report["sequence"], passages) +
            fmt::format("<h3>At step {}, the worst one</h3>\n", page.report["sequence"]["worst_step"].get<Index>());
   Table table({{"passage", true},
                {"blade"},
@@ -89,7 +89,7 @@ std::string passages_part(ReportPage const& page) {
                {"smallest angle", true},
                {"newly inverted", true},
                {"short of a threshold"}});
-  for (json const& passage : wheel["passages"]) {
+  for (json const& passage : passages) {
     auto const number_of = passage["passage"].get<std::size_t>();
     json const determinant = worst_of(passage["quality"], "determinant_3x3x3", false);
     json const angle = worst_of(passage["quality"], "minimum_angle_deg", false);

@@ -61,7 +61,7 @@ std::string regions_table(ReportPage const& page) {
 }  // namespace
 
 std::string plan_part(ReportPage const& page) {
-  if (page.report.contains("wheel")) return {};
+  if (page.report.contains("passages")) return {};
   std::string out = "<section id=\"plan\"><h2>Plan</h2>\n";
   if (page.structured) {
     out +=

@@ -130,9 +130,9 @@ std::string quality_part(ReportPage const& page) {
   std::string out = "<section id=\"quality\"><h2>Quality before and after</h2>\n";
   if (page.report.contains("sequence"))
     out += fmt::format("<p>Of step {}, the worst one.</p>\n", page.report["sequence"]["worst_step"].get<Index>());
-  if (page.report.contains("wheel"))
+  if (page.report.contains("passages"))
     out += fmt::format("<p>Of passage {}, the worst one; the baseline is the same in all.</p>\n",
-                       page.report["wheel"]["worst_passage"].get<Index>());
+                       page.report["worst_passage"].get<Index>());
   if (!page.near_histograms.empty() || !page.far_histograms.empty())
     out += "<p class=\"key\"><i class=\"before\"></i> baseline <i class=\"after\"></i> morphed; numbers of " +
            escaped(page.kind) + " on a logarithmic scale. " + escaped(page.histogram_note) + "</p>\n";

@@ -93,7 +93,7 @@ struct StepFigure {
 };
 
 struct ReportPage {
-  nlohmann::json report;  ///< as --report writes it
+  nlohmann::json report;  ///< as --report writes it; of wheels with the worst passage as "morphed"
   bool structured = true;
   std::string kind;  ///< "cells" or "elements"
   double mesh_size = 0, largest_displacement = 0;

@@ -73,15 +73,14 @@ Index newly_inverted_of(json const& morphed) {
   return out;
 }
 
-Index newly_inverted_of_wheel(json const& wheel) {
+Index newly_inverted_of_wheel(json const& report) {
   Index out = 0;
-  for (json const& passage : wheel["passages"]) out += newly_inverted_of(passage["quality"]);
+  for (json const& passage : report["passages"]) out += newly_inverted_of(passage["quality"]);
   return out;
 }
 
 /// " in 2 of 36 passages", " in any of 36 passages".
-std::string of_passages(json const& wheel, bool inverted, bool falls_short) {
-  auto const& passages = wheel["passages"];
+std::string of_passages(json const& passages, bool inverted, bool falls_short) {
   auto const fails = [&](json const& passage) {
     if (inverted) return newly_inverted_of(passage["quality"]) > 0;
     return std::any_of(passage["shortfalls"].begin(), passage["shortfalls"].end(),
@@ -111,9 +110,9 @@ Verdict verdict_of(ReportPage const& page) {
             : beyond > 0 ? fmt::format(" in {} of {} steps", beyond, n)
                          : fmt::format(" in any of {} steps", n);
   }
-  if (report.contains("wheel")) {
-    inverted = std::max(inverted, newly_inverted_of_wheel(report["wheel"]));
-    if (!report.contains("sequence")) steps = of_passages(report["wheel"], inverted > 0, falls_short);
+  if (report.contains("passages")) {
+    inverted = std::max(inverted, newly_inverted_of_wheel(report));
+    if (!report.contains("sequence")) steps = of_passages(report["passages"], inverted > 0, falls_short);
   }
   if (inverted > 0) {
     bool const written = !report["output"].is_null();
@@ -134,7 +133,7 @@ std::string certificate_sentence(ReportPage const& page) {
   json const& morphed = page.report["morphed"];
   if (!morphed.contains("certificate")) return {};
   json const& c = morphed["certificate"];
-  std::string of_worst = page.report.contains("wheel") ? " of the wheel" : "";
+  std::string of_worst = page.report.contains("passages") ? " of the wheel" : "";
   if (page.report.contains("sequence")) of_worst += " of the worst step";
   if (c["holds"].get<bool>())
     return fmt::format(
@@ -163,9 +162,9 @@ struct Shown {
 
 /// The mesh, or every passage of a wheel.
 std::vector<Shown> shown_of(ReportPage const& page) {
-  if (!page.report.contains("wheel")) return {{"", &page.report["morphed"]}};
+  if (!page.report.contains("passages")) return {{"", &page.report["morphed"]}};
   std::vector<Shown> out;
-  for (json const& passage : page.report["wheel"]["passages"])
+  for (json const& passage : page.report["passages"])
     out.push_back({fmt::format("passage {}, ", passage["passage"].get<Index>()), &passage["quality"]});
   return out;
 }
@@ -208,8 +207,8 @@ std::string wall_card(ReportPage const& page) {
 
 double largest_displacement_of(ReportPage const& page) {
   double out = page.largest_displacement;
-  if (page.report.contains("wheel"))
-    for (json const& passage : page.report["wheel"]["passages"])
+  if (page.report.contains("passages"))
+    for (json const& passage : page.report["passages"])
       out = std::max(out, passage["largest_displacement"].get<double>());
   return out;
 }
@@ -225,13 +224,13 @@ std::string cards(ReportPage const& page) {
                 "of the mesh size, largest difference of copies");
   if (page.check.slip_nodes > 0)
     out += card("off slip surfaces", number(page.check.slip / page.mesh_size), "of the mesh size, beyond the baseline");
-  if (report.contains("wheel"))
-    out += card("neighbours apart", number(report["wheel"]["largest_seam_gap"].get<double>() / page.mesh_size),
+  if (report.contains("passages"))
+    out += card("neighbours apart", number(report["largest_seam_gap"].get<double>() / page.mesh_size),
                 "of the size of a passage, nodes that coincide, before one took over the other's position");
   double const largest = largest_displacement_of(page);
   out += card("largest displacement", number(largest),
               fmt::format("{} % of the {} size", number(100 * largest / page.mesh_size),
-                          report.contains("wheel") ? "passage's" : "mesh"));
+                          report.contains("passages") ? "passage's" : "mesh"));
   double const seconds = report["times"]["total_seconds"].get<double>();
   out += card("time", fmt::format("{} s", number(seconds)), count(report["nodes"]) + " nodes");
   return out + "</div>\n";

@@ -194,32 +194,26 @@ QualityReport CasePlan::measure(QualityWanted wanted) const {
   return mesh_.measure(wanted, patched());
 }
 
-PlanOutcome CasePlan::outcome(Coordinates const& morphed, bool verdict, bool at_once) const {
+PlanOutcome CasePlan::outcome(Coordinates const& morphed, bool verdict) const {
   PlanOutcome out;
-  if (!mesh_.is_structured()) out.json = json();
-  auto const targets = at_once ? rules().target_reach(morphed) : std::vector<TargetReach>();
+  auto const targets = case_file_.sequence ? std::vector<TargetReach>() : rules().target_reach(morphed);
   for (auto const& target : targets) out.notes.push_back(describe_reach(patched(), target));
-  out.json["targets"] = targets_json(patched(), targets);
-  if (!mesh_.is_structured()) return out;
-  out.json["stages"] = verdict ? nlohmann::json::array() : judge_stages(morphed, out.text);
+  out.targets = targets_json(patched(), targets);
+  out.headline = headline();
+  if (!mesh_.is_structured())
+    out.plan = json();
+  else
+    out.stages = verdict ? std::vector<StageOutcome>() : judge_stages(morphed);
   return out;
 }
 
 /// The smallest determinant of each stage of blocks.
-nlohmann::json CasePlan::judge_stages(Coordinates const& morphed, std::string& text) const {
-  nlohmann::json out = nlohmann::json::array();
+std::vector<StageOutcome> CasePlan::judge_stages(Coordinates const& morphed) const {
+  std::vector<StageOutcome> out;
   for (auto const& stage : PlanAccess::chains(plan_)->stages) {
     CellValue const worst =
         min_determinant(exec_, mesh_.mesh(), views(morphed), mesh_.indexed().handedness(), stage.cells);
-    nlohmann::json json{{"name", stage.name}, {"min_determinant", nullptr}};
-    if (worst.zone >= 0) {
-      auto const& zone = mesh_.mesh().zones[std::size_t(worst.zone)].name;
-      json["min_determinant"] = {
-          {"value", worst.value}, {"zone", zone}, {"cell", {worst.cell[0] + 1, worst.cell[1] + 1, worst.cell[2] + 1}}};
-      text += fmt::format("stage {}: smallest determinant {:.4g}, {}\n", stage.name, worst.value,
-                          describe_cell(zone, worst.cell));
-    }
-    out.push_back(std::move(json));
+    out.push_back({stage.name, worst, worst.zone < 0 ? "" : mesh_.mesh().zones[std::size_t(worst.zone)].name});
   }
   return out;
 }
@@ -294,11 +288,7 @@ StepTimes CasePlan::times() const {
 }
 
 std::string CasePlan::text(bool all) const {
-  std::string text;
-  for (auto const& note : notes()) text += "note: " + note + "\n";
-  if (!mesh_.is_structured()) return text + headline();
-  if (!text.empty()) text += "\n";
-  return text + block_plan_text(*PlanAccess::chains(plan_), all);
+  return mesh_.is_structured() ? block_plan_text(*PlanAccess::chains(plan_), all) : headline();
 }
 
 nlohmann::json CasePlan::json() const {

@@ -8,10 +8,9 @@
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/block_graph.hpp>
 #include <gridmorph/plan/trim_note.hpp>
-#include <gridmorph/report/shortfalls.hpp>
-#include <gridmorph/report/step_times.hpp>
 #include <gridmorph/run/diagnosis.hpp>
 #include <gridmorph/run/loaded_mesh.hpp>
+#include <gridmorph/run/run_document.hpp>
 #include <gridmorph/run/shocks.hpp>
 
 #include <nlohmann/json.hpp>
@@ -24,20 +23,6 @@
 #include <vector>
 
 namespace gridmorph::cli {
-
-/// What became of the plan's stages and targets.
-struct PlanOutcome {
-  std::string text;                ///< stages, above the quality tables
-  std::vector<std::string> notes;  ///< how far targets were missed
-  nlohmann::json json;             ///< for the report
-};
-
-/// What a motion is predicted to make of cells.
-struct PlanPrediction {
-  std::string text;
-  std::vector<std::string> warnings;
-  nlohmann::json json;
-};
 
 /// Boundary displacements are in the order of MorphPlan::boundary_nodes().
 class CasePlan {
@@ -72,8 +57,8 @@ class CasePlan {
 
   /// Quality with the near field and the walls of this plan in `wanted`.
   [[nodiscard]] QualityReport measure(QualityWanted wanted) const;
-  /// `verdict`: that is all that is wanted; `at_once`: this is the motion as the rules stand, no step of a sequence.
-  [[nodiscard]] PlanOutcome outcome(Coordinates const& morphed, bool verdict, bool at_once) const;
+  /// `verdict`: that is all that is wanted. Targets are those of a motion as the rules stand, no step of a sequence.
+  [[nodiscard]] PlanOutcome outcome(Coordinates const& morphed, bool verdict) const;
   /// What a mesh goes through on its way, as meshes in a folder, which is made where it is missing. `displacement`: of
   /// the boundary, that came to `morphed`.
   void write_stages(std::filesystem::path const& folder, std::vector<Vec3> const& displacement,
@@ -88,7 +73,7 @@ class CasePlan {
   [[nodiscard]] std::vector<Shortfall> trimmed() const;
   /// Of planning.
   [[nodiscard]] StepTimes times() const;
-  /// For `gridmorph plan`.
+  /// For `gridmorph plan`, without notes.
   [[nodiscard]] std::string text(bool all) const;
   [[nodiscard]] nlohmann::json json() const;
   /// The blocks and chains, for drawings; nothing of elements.
@@ -106,7 +91,7 @@ class CasePlan {
   void take_trims(std::vector<Trim> const& trims);
   /// The mesh with the patches that planning added.
   [[nodiscard]] Mesh const& patched() const;
-  [[nodiscard]] nlohmann::json judge_stages(Coordinates const& morphed, std::string& text) const;
+  [[nodiscard]] std::vector<StageOutcome> judge_stages(Coordinates const& morphed) const;
   [[nodiscard]] PlanPrediction of_step(PlanPrediction prediction, int step) const;
 
   LoadedMesh const& mesh_;

@@ -1,42 +1,31 @@
 // How a run ends: meshes, report and page appear together, or a message says why not.
 #pragma once
 
-#include <gridmorph/report/shortfalls.hpp>
 #include <gridmorph/run/console.hpp>
-
-#include <nlohmann/json.hpp>
+#include <gridmorph/run/run_document.hpp>
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace gridmorph::cli {
 
+class RunPage;
+
 /// What a run has made, and what it says of it.
 struct Ending {
+  RunDocument& document;
+  OutputOptions const& options;
   std::filesystem::path output;
-  std::optional<std::filesystem::path> report;
-  std::optional<std::filesystem::path> page = {};  ///< the report as a page
-  bool written = false;                            ///< the meshes are wanted
-  bool falls_short = false;
-  std::function<nlohmann::json()> json;  ///< the report, less the name of the output
-  std::function<std::string(nlohmann::json const& report)> page_text = {};
-  std::function<void()> write;        ///< puts meshes in place, where they are wanted
-  std::function<std::string()> text;  ///< for people
-  std::string wrote;                  ///< after it, where the meshes are written
-  std::string also_wrote;             ///< after that, in any case
-  std::vector<std::string> warnings = {};
+  RunPage* page = nullptr;      ///< the report as a page, where one is wanted
+  bool written = false;         ///< the meshes are wanted
+  std::function<void()> write;  ///< puts meshes in place, where they are wanted
+  std::string wrote;            ///< after the text, where the meshes are written
+  std::string also_wrote = {};  ///< after reports, in any case
   std::function<std::string()> refusal;
 };
 
 /// Returns the exit status.
 int conclude(Ending const& ending, Console& console);
-
-/// "wrote report.json"; empty without a report.
-std::string wrote_report(std::optional<std::filesystem::path> const& report);
-/// What quiet runs are told, since no table says it.
-std::vector<std::string> messages_of(std::vector<Shortfall> const& shortfalls);
 
 }  // namespace gridmorph::cli

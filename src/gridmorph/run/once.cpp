@@ -122,16 +122,10 @@ class Once {
   }
 
   void look_at_result() {
-    run_.notes = run_.plan().notes();
-    run_.notes.insert(run_.notes.end(), guarded_.notes.begin(), guarded_.notes.end());
     watch_.lap();
-    outcome_ = run_.plan().outcome(run_.morphed(), run_.quality().fast, true);
-    clearances_ = run_.clearances();
-    run_.notes.insert(run_.notes.end(), outcome_.notes.begin(), outcome_.notes.end());
-    add_time(run_.times, "quality", watch_.lap());
-    shortfalls_ = run_.shortfalls_of_motion();
-    auto const of_quality = run_.shortfalls_of(run_.quality());
-    shortfalls_.insert(shortfalls_.end(), of_quality.begin(), of_quality.end());
+    document_ = run_.document(run_.quality(), guarded_);
+    document_.mesh->clearances = run_.clearances();
+    add_time(document_.times, "quality", watch_.lap());
   }
 
   void find_valid_share() {
@@ -142,7 +136,7 @@ class Once {
     std::string const valid =
         fmt::format("valid up to {} % of the motion, every cell of that certified", share.percent) +
         (share.broken.empty() ? "" : fmt::format("; at {} % {}", share.percent + 1, share.broken));
-    run_.notes.push_back(valid);
+    document_.notes.push_back(valid);
     advice_ = valid + ": " + advice_;
   }
 
@@ -152,20 +146,7 @@ class Once {
     watch_.lap();
     page_->begin(run_);
     page_->finish(run_, run_.quality());
-    run_.times.push_back({"page", watch_.lap()});
-  }
-
-  [[nodiscard]] nlohmann::json json() const {
-    nlohmann::json json = run_.json(run_.quality(), outcome_);
-    if (!clearances_.empty()) json["clearances"] = clearance_json(clearances_);
-    json.update(guarded_.json);
-    return json;
-  }
-
-  [[nodiscard]] std::string text() const {
-    // Notes of a plan without a headline go straight on to what follows.
-    return run_.head() + (run_.plan().headline().empty() ? "" : "\n") +
-           (clearances_.empty() ? "" : clearance_table(clearances_) + "\n") + run_.tables(run_.quality(), outcome_);
+    document_.times.push_back({"page", watch_.lap()});
   }
 
   void write() {
@@ -174,15 +155,15 @@ class Once {
       run_.mesh().write(case_file_.input, case_file_.output, run_.morphed(),
                         holds_fields(file_.format) ? run_.fields() : OutputFields());
       if (options_.vtk) run_.mesh().write_vtk(*options_.vtk, run_.morphed(), run_.fields());
-      add_time(run_.times, "write", watch_.lap());
+      add_time(document_.times, "write", watch_.lap());
       if (page_) page_->add_output(case_file_.output);
-      if (page_) add_time(run_.times, "page", watch_.lap(), false);
+      if (page_) add_time(document_.times, "page", watch_.lap(), false);
     }
     if (options_.stages) run_.write_stages(*options_.stages);
   }
 
   int end() {
-    if (written_) run_.times.push_back({"write", 0, true});
+    if (written_) document_.times.push_back({"write", 0, true});
     std::string const vtk = options_.vtk ? fmt::format("wrote {}\n", options_.vtk->string()) : std::string();
     std::string stages;
     if (options_.stages)
@@ -190,18 +171,14 @@ class Once {
                            run_.mesh().is_structured() ? "the mesh after every stage" : "wrap and background mesh",
                            options_.stages->string());
     return conclude(
-        {.output = case_file_.output,
-         .report = options_.report,
-         .page = options_.page,
+        {.document = document_,
+         .options = options_,
+         .output = case_file_.output,
+         .page = page_ ? &*page_ : nullptr,
          .written = written_,
-         .falls_short = any_failure(shortfalls_),
-         .json = [&] { return json(); },
-         .page_text = [&](nlohmann::json const& report) { return page_->text(report); },
          .write = [&] { write(); },
-         .text = [&] { return text(); },
          .wrote = fmt::format("\nwrote {}\n", case_file_.output.string()) + vtk,
-         .also_wrote = wrote_report(options_.report) + wrote_report(options_.page) + stages,
-         .warnings = console_.quiet() ? messages_of(shortfalls_) : std::vector<std::string>(),
+         .also_wrote = stages,
          .refusal = [&] { return run_.refusal_of(case_file_.output, file_.traits().cells + " are", advice_); }},
         console_);
   }
@@ -214,9 +191,7 @@ class Once {
   Run run_;
   Stopwatch watch_;
   Guarded guarded_;
-  PlanOutcome outcome_;
-  std::vector<TipClearance> clearances_;
-  std::vector<Shortfall> shortfalls_;
+  RunDocument document_;
   bool written_ = false;
   std::string advice_;
 };

@@ -33,23 +33,18 @@ void print_plan(CaseFile const& case_file, Console& console, PlanPrinting const&
   PlanPrediction const prediction = run.predict();
   for (auto const& warning : prediction.warnings) console.warn(warning);
   for (auto const& s : run.shortfalls_of_motion()) console.warn(s.message);
-  nlohmann::json json = run.plan().json();
-  if (!prediction.json.is_null()) json["prediction"] = prediction.json;
-  json["gridmorph"] = GRIDMORPH_VERSION;
-  json["case_file"] = case_file.source.string();
-  json["input"] = case_file.input.string();
-  json["nodes"] = run.mesh().n_nodes();
-  json["notes"] = run.notes;
-  json["times"] = times_json(run.times, run.mesh().n_nodes());
+  RunDocument document = document_of(case_file);
+  document.nodes = run.mesh().n_nodes();
+  document.times = run.times;
+  document.notes = run.plan().notes();
+  document.plan = {run.plan().text(options.all), run.plan().json(), prediction};
   if (graph) {
     PendingFile drawing(*graph, is_dot(*graph) ? dot_text(*run.plan().graph()) : svg_text(*run.plan().graph()));
     drawing.commit();
   }
-  console.document(json);
+  console.document(run_json(document));
   if (!console.json())
-    console.result(run.plan().text(options.all) + (prediction.text.empty() ? "" : "\n") + prediction.text + "\n" +
-                   format_times(run.times, run.mesh().n_nodes()) +
-                   (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
+    console.result(run_text(document) + (graph ? fmt::format("wrote {}\n", graph->string()) : std::string()));
 }
 
 }  // namespace gridmorph::cli

@@ -291,40 +291,18 @@ std::vector<TipClearance> Run::clearances(Moment const* when) const {
   return out;
 }
 
-nlohmann::json Run::json(QualityReport const& quality, PlanOutcome const& outcome) const {
-  nlohmann::json json = quality_json(baseline_, quality, thresholds_of(case_file_));
-  auto& list = json["shortfalls"];
-  auto const of_motion = shortfalls_json(shortfalls_of_motion());
-  list.insert(list.begin(), of_motion.begin(), of_motion.end());
-  json["gridmorph"] = GRIDMORPH_VERSION;
-  json["case_file"] = case_file_.source.string();
-  json["input"] = case_file_.input.string();
-  json["nodes"] = mesh_->n_nodes();
-  json["times"] = times_json(times, mesh_->n_nodes());
-  json["notes"] = notes;
-  json["fields"] = nlohmann::json::array();
-  for (auto const& use : case_file_.fields) {
-    json["fields"].push_back(mapping_json(*use.field));
-    json["fields"].back()["rule"] = use.where;
-    if (use.inverse) json["fields"].back()["inverse"] = inverse_json(*use.inverse);
-  }
-  json.update(outcome.json);
-  return json;
-}
-
-std::string Run::head() const {
-  std::string text;
-  for (auto const& note : notes) text += "note: " + note + "\n";
-  for (auto const& s : shortfalls_of_motion())
-    text += (s.severity == Shortfall::Severity::failure ? "falls short: " : "warning: ") + s.message + "\n";
-  return text + plan_->headline();
-}
-
-std::string Run::tables(QualityReport const& quality, PlanOutcome const& outcome) const {
-  std::string text = outcome.text + (outcome.text.empty() ? "" : "\n");
-  text += format_table(baseline_, quality, thresholds_of(case_file_));
-  if (!quality.fast) text += "\n" + format_short_table(baseline_, quality);
-  return text + "\n" + format_times(times, mesh_->n_nodes());
+RunDocument Run::document(QualityReport const& quality, Guarded const& guarded) const {
+  RunDocument out = document_of(case_file_);
+  out.nodes = mesh_->n_nodes();
+  out.times = times;
+  out.notes = plan_->notes();
+  out.notes.insert(out.notes.end(), guarded.notes.begin(), guarded.notes.end());
+  out.guarded = guarded.json;
+  out.baseline = baseline_;
+  out.mesh = {quality, shortfalls_of_motion(), plan_->outcome(result_.morphed, quality.fast)};
+  auto const& targets = out.mesh->plan.notes;
+  out.notes.insert(out.notes.end(), targets.begin(), targets.end());
+  return out;
 }
 
 std::string Run::refusal_of(std::filesystem::path const& output, std::string const& what,

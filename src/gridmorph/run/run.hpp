@@ -111,12 +111,8 @@ class Run {
   /// Of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip surfaces
   /// undo. Throws MotionError where models lie elsewhere.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of_motion() const;
-  /// The report, less the name of the output.
-  [[nodiscard]] nlohmann::json json(QualityReport const& quality, PlanOutcome const& outcome) const;
-  /// Notes and headline; a blank line after them where there are any.
-  [[nodiscard]] std::string head() const;
-  /// Stages, quality tables and times.
-  [[nodiscard]] std::string tables(QualityReport const& quality, PlanOutcome const& outcome) const;
+  /// What came out, of this quality.
+  [[nodiscard]] RunDocument document(QualityReport const& quality, Guarded const& guarded) const;
   /// Why the result is not written. `what` is inverted, `advice`: what to do.
   [[nodiscard]] std::string refusal_of(std::filesystem::path const& output, std::string const& what,
                                        std::string const& advice) const;

@@ -1,7 +1,6 @@
 // A sequence of meshes over time from one plan.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/report/measure_text.hpp>
 #include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/run_files.hpp>
@@ -19,22 +18,6 @@ namespace gridmorph::cli {
 
 namespace {
 
-struct StepResult {
-  double time = 0;
-  double largest_displacement = 0;
-  double determinant = 0;  ///< smallest 3x3x3
-  double inversion = 0;    ///< smallest FallenCells::worst of inverted cells: which of two steps at -1 is the worse one
-  std::string place;       ///< of it, for people; empty when nothing was measured
-  std::string zone;
-  std::vector<int> cell;  ///< 1-based indices; of an unstructured mesh the element's number
-  Index newly_inverted = 0;
-  std::string shortfall;  ///< the first of those that are failures
-  std::vector<TipClearance> clearances;
-};
-
-/// Rows of the table; of longer sequences evenly spaced steps and the worst one are shown.
-constexpr int most_rows = 100;
-
 double largest_displacement(Coordinates const& before, Coordinates const& after) {
   double squared = 0;
   for (Index n = 0; n < before.size(); ++n) {
@@ -42,67 +25,6 @@ double largest_displacement(Coordinates const& before, Coordinates const& after)
     squared = std::max(squared, dot(u, u));
   }
   return std::sqrt(squared);
-}
-
-/// One row per step, of long sequences evenly spaced ones and the worst.
-std::string steps_table(std::vector<StepResult> const& steps, std::size_t worst) {
-  std::string text = fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}\n", "step", "time", "largest displacement",
-                                 "smallest determinant", "newly inverted", "at");
-  std::size_t const stride = (steps.size() + most_rows - 1) / most_rows;
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    if (s % stride != 0 && s != worst) continue;
-    auto const& step = steps[s];
-    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {}{}\n", s + 1, step.time,
-                        step.largest_displacement, step.determinant, step.newly_inverted, step.place,
-                        s == worst ? "  <- worst" : "");
-  }
-  return text;
-}
-
-nlohmann::json steps_json(std::vector<StepResult> const& steps, std::size_t worst, SequenceOptions const& options) {
-  nlohmann::json list = nlohmann::json::array();
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    auto const& step = steps[s];
-    nlohmann::json json{{"step", s + 1},
-                        {"time", step.time},
-                        {"largest_displacement", step.largest_displacement},
-                        {"newly_inverted", step.newly_inverted},
-                        {"shortfall", step.shortfall.empty() ? nlohmann::json() : nlohmann::json(step.shortfall)},
-                        {"min_determinant", nullptr}};
-    if (!step.place.empty()) {
-      json["min_determinant"] = {{"value", step.determinant}, {"zone", step.zone}};
-      if (step.cell.size() == 1)
-        json["min_determinant"]["element"] = step.cell[0];
-      else
-        json["min_determinant"]["cell"] = step.cell;
-    }
-    if (!step.clearances.empty()) json["clearances"] = clearance_json(step.clearances);
-    if (one_file_per_step(options)) json["file"] = step_path(options, int(s)).string();
-    list.push_back(std::move(json));
-  }
-  return {
-      {"period", options.period}, {"periods", options.periods}, {"worst_step", worst + 1}, {"steps", std::move(list)}};
-}
-
-StepResult step_result(double time, Coordinates const& before, Coordinates const& after, QualityReport const& quality) {
-  StepResult out;
-  out.time = time;
-  out.largest_displacement = largest_displacement(before, after);
-  out.newly_inverted = newly_inverted(quality);
-  for (auto const* region : {&quality.near_field, &quality.far_field})
-    out.inversion = std::min(out.inversion, (*region)[Fall::inverted].worst);
-  MeasureStatistics const* worst = nullptr;
-  for (auto const* region : {&quality.near_field, &quality.far_field}) {
-    auto const& measure = (*region)[Measure::determinant_3x3x3];
-    if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
-  }
-  if (worst == nullptr) return out;
-  out.determinant = worst->worst;
-  out.place = worst_place(quality, *worst);
-  out.zone = quality.zone_names.at(std::size_t(worst->worst_zone));
-  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
-  if (quality.unstructured) out.cell.resize(1);
-  return out;
 }
 
 /// Throws ConfigError when an output or the report cannot be written where it should.
@@ -134,16 +56,8 @@ void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
 }
 
 /// Which of two steps is the worse one.
-std::pair<double, double> badness(StepResult const& step) { return {step.determinant, step.inversion}; }
-
-/// "3 of 24 steps fall short, the first is step 7: ..."; empty where none does.
-std::string shortfall_text(std::vector<StepResult> const& results) {
-  auto const falls_short = [](StepResult const& s) { return !s.shortfall.empty(); };
-  auto const first = std::find_if(results.begin(), results.end(), falls_short);
-  if (first == results.end()) return "";
-  auto const count = std::count_if(results.begin(), results.end(), falls_short);
-  return fmt::format("{} of {} steps {} short, {} step {}: {}", count, results.size(), count == 1 ? "falls" : "fall",
-                     count == 1 ? "it is" : "the first is", first - results.begin() + 1, first->shortfall);
+std::pair<double, double> badness(SequenceStep const& step) {
+  return {step.passages.front().determinant, step.passages.front().inversion};
 }
 
 class Sequence {
@@ -211,10 +125,10 @@ class Sequence {
   }
 
   void make_steps() {
-    results_.clear();
+    sequence_ = {options_, {}, 0};
     stepped_.clear();
     relaxed_ = 0;
-    worst_ = worst_for_retry_ = 0;
+    worst_for_retry_ = 0;
     inverted_ = false;
     files_.emplace(case_file_, run_.mesh());
     for (int step = 0; step < options_.steps; ++step) {
@@ -234,7 +148,7 @@ class Sequence {
       if (auto const tried = run_.try_steps(); !tried.text.empty()) stepped_[step] = tried.text;
     add_time(run_.times, "quality" + count, part_.lap(), false);
     judge(step);
-    if (page_) page_->add_step(run_, step, options_.steps, worst_ == std::size_t(step));
+    if (page_) page_->add_step(run_, step, options_.steps, sequence_.worst == std::size_t(step));
     part_.lap();
     // Once a step cannot be used the files are not needed; the table still says how the others fare.
     if (!inverted_ || case_file_.guard.write_inverted) files_->add(run_.morphed(), run_.fields());
@@ -242,14 +156,15 @@ class Sequence {
   }
 
   void judge(int step) {
-    auto& result = results_.emplace_back(
-        step_result(options_.time_at(step), run_.mesh().coordinates(), run_.morphed(), run_.quality()));
-    for (auto const& s : shortfalls({}, run_.quality(), thresholds_of(case_file_)))
-      if (s.severity == Shortfall::Severity::failure && result.shortfall.empty()) result.shortfall = s.message;
-    result.clearances = run_.clearances(&moments_[std::size_t(step)]);
-    inverted_ = inverted_ || result.newly_inverted > 0;
-    if (step == 0 || badness(result) < badness(results_[worst_])) {
-      worst_ = std::size_t(step);
+    auto& steps = sequence_.steps;
+    auto& now = steps.emplace_back(SequenceStep{options_.time_at(step)});
+    now.passages = {morphed_step(largest_displacement(run_.mesh().coordinates(), run_.morphed()), run_.quality(),
+                                 run_.clearances(&moments_[std::size_t(step)]))};
+    for (auto const& s : run_.shortfalls_of(run_.quality()))
+      if (s.severity == Shortfall::Severity::failure) now.failures.push_back(s.message);
+    inverted_ = inverted_ || now.newly_inverted() > 0;
+    if (step == 0 || badness(now) < badness(steps[sequence_.worst])) {
+      sequence_.worst = std::size_t(step);
       worst_quality_ = run_.quality();
     }
     if (Badness const now = badness_of(run_.quality()); step == 0 || most_ < now) {
@@ -260,31 +175,27 @@ class Sequence {
 
   void look_at_worst() {
     written_ = !inverted_ || case_file_.guard.write_inverted;
-    (void)run_.morph(&moments_[worst_]);
+    (void)run_.morph(&moments_[sequence_.worst]);
     if (!written_ || page_) {  // what is said of the worst cell needs it as it came out in the end
       run_.measure();
       if (!case_file_.guard.freeze) (void)run_.try_steps();
     }
-    outcome_ = run_.plan().outcome(run_.morphed(), worst_quality_.fast, false);
-    run_.notes = run_.plan().notes();
-    run_.notes.insert(run_.notes.end(), guarded_.notes.begin(), guarded_.notes.end());
     add_guard_notes();
-    shortfalls_ = run_.shortfalls_of_motion();
-    motion_falls_short_ = any_failure(shortfalls_);
-    auto const of_quality = run_.shortfalls_of(worst_quality_);
-    shortfalls_.insert(shortfalls_.end(), of_quality.begin(), of_quality.end());
+    document_ = run_.document(worst_quality_, guarded_);
+    document_.mesh->clearances = sequence_.steps[sequence_.worst].passages.front().clearances;
+    document_.sequence = std::move(sequence_);
   }
 
   /// What the guard did in the steps.
   void add_guard_notes() {
     constexpr std::size_t most_notes = 8;  // of more of them the number
     if (relaxed_ > 0)
-      run_.notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed_,
-                                       run_.mesh().kind().lost));
+      guarded_.notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed_,
+                                           run_.mesh().kind().lost));
     std::size_t shown = 0;
     for (auto const& [step, text] : stepped_)
-      if (shown++ < most_notes) run_.notes.push_back(fmt::format("step {}: {}", step + 1, text));
-    if (shown > most_notes) run_.notes.push_back(fmt::format("the same in {} more steps", shown - most_notes));
+      if (shown++ < most_notes) guarded_.notes.push_back(fmt::format("step {}: {}", step + 1, text));
+    if (shown > most_notes) guarded_.notes.push_back(fmt::format("the same in {} more steps", shown - most_notes));
   }
 
   void draw_page() {
@@ -292,49 +203,20 @@ class Sequence {
     console_.progress("drawing the page");
     part_.lap();
     page_->finish(run_, worst_quality_);
-    run_.times.push_back({"page", part_.lap()});
-  }
-
-  [[nodiscard]] nlohmann::json json() const {
-    nlohmann::json json = run_.json(worst_quality_, outcome_);
-    json["sequence"] = steps_json(results_, worst_, options_);
-    json.update(guarded_.json);
-    return json;
-  }
-
-  [[nodiscard]] std::string text(std::string const& shortfall) const {
-    std::string text = run_.head();
-    text += (text.empty() ? "" : "\n") + steps_table(results_, worst_);
-    std::vector<std::vector<TipClearance>> clearances;
-    for (StepResult const& step : results_) clearances.push_back(step.clearances);
-    if (std::string const tips = clearance_steps_table(clearances); !tips.empty()) text += "\n" + tips;
-    if (!shortfall.empty()) text += "\n" + shortfall + "\n";
-    return text + fmt::format("\nstep {}, the worst one\n\n", worst_ + 1) + run_.tables(worst_quality_, outcome_);
+    document_.times.push_back({"page", part_.lap()});
   }
 
   int end() {
-    std::string const shortfall = shortfall_text(results_);
-    std::vector<std::string> warnings;
-    if (console_.quiet()) {
-      warnings = messages_of(shortfalls_);
-      if (!shortfall.empty()) warnings.insert(warnings.begin(), shortfall);
-    }
-    OutputOptions const& output = case_file_.output_options;
-    return conclude({.output = options_.output,
-                     .report = output.report,
-                     .page = output.page,
+    return conclude({.document = document_,
+                     .options = case_file_.output_options,
+                     .output = options_.output,
+                     .page = page_ ? &*page_ : nullptr,
                      .written = written_,
-                     .falls_short = !shortfall.empty() || motion_falls_short_,
-                     .json = [&] { return json(); },
-                     .page_text = [&](nlohmann::json const& report) { return page_->text(report); },
                      .write =
                          [&] {
                            if (written_) files_->commit();
                          },
-                     .text = [&] { return text(shortfall); },
                      .wrote = wrote_steps(options_),
-                     .also_wrote = wrote_report(output.report) + wrote_report(output.page),
-                     .warnings = std::move(warnings),
                      .refusal =
                          [&] {
                            return run_.refusal_of(options_.output, "steps have cells",
@@ -353,15 +235,14 @@ class Sequence {
   Stopwatch part_;
   Guarded guarded_;
   std::optional<StepFiles> files_;
-  std::vector<StepResult> results_;
+  MorphedSequence sequence_;
   std::map<int, std::string> stepped_;  ///< steps whose way was made in several
   Index relaxed_ = 0;                   ///< most cells that were bad in a step
   QualityReport worst_quality_;
-  std::size_t worst_ = 0, worst_for_retry_ = 0;
+  std::size_t worst_for_retry_ = 0;
   Badness most_;  ///< of worst_for_retry_
-  bool inverted_ = false, written_ = false, motion_falls_short_ = false;
-  PlanOutcome outcome_;
-  std::vector<Shortfall> shortfalls_;
+  bool inverted_ = false, written_ = false;
+  RunDocument document_;
 };
 
 }  // namespace

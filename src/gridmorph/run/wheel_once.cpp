@@ -5,7 +5,6 @@
 #include <gridmorph/run/wheel_run.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <optional>
 
@@ -27,10 +26,11 @@ class WheelOnce {
   int operator()() {
     run_.prepare();
     writer_.emplace(output_.string(), run_.wheel().mesh);
-    result_ = run_.result(run_.make(
-        0, [&](int zone, double const* x, double const* y, double const* z) { writer_->write_zone(zone, x, y, z); }));
-    if (page_) draw_wheel_page(run_, case_file_, result_, *page_, console_);
-    written_ = !any_inverted(result_) || case_file_.guard.write_inverted;
+    WheelMade const made = run_.make(
+        0, [&](int zone, double const* x, double const* y, double const* z) { writer_->write_zone(zone, x, y, z); });
+    document_ = run_.document(made);
+    if (page_) draw_wheel_page(run_, case_file_, *made.worst, document_, *page_, console_);
+    written_ = !any_inverted(made) || case_file_.guard.write_inverted;
     return end();
   }
 
@@ -42,22 +42,14 @@ class WheelOnce {
   }
 
   int end() {
-    OutputOptions const& options = case_file_.output_options;
-    std::vector<std::string> const failures = failures_of(result_);
     return conclude(
-        {.output = output_,
-         .report = options.report,
-         .page = options.page,
+        {.document = document_,
+         .options = case_file_.output_options,
+         .output = output_,
+         .page = page_ ? &*page_ : nullptr,
          .written = written_,
-         .falls_short = !failures.empty(),
-         .json = [&] { return wheel_json(run_, case_file_, result_); },
-         .page_text =
-             [&](nlohmann::json const& json) { return page_->text(wheel_page_json(case_file_, result_, json)); },
          .write = [&] { write(); },
-         .text = [&] { return wheel_text(run_, result_); },
          .wrote = fmt::format("\nwrote {}\n", output_.string()),
-         .also_wrote = wrote_report(options.report) + wrote_report(options.page),
-         .warnings = failures,
          .refusal = [&] { return wheel_refusal(run_, output_, "cells are inverted that were not in the baseline"); }},
         console_);
   }
@@ -68,7 +60,7 @@ class WheelOnce {
   std::optional<RunPage> page_;
   WheelRun run_;
   std::optional<MeshFileWriter> writer_;
-  WheelResult result_;
+  RunDocument document_;
   bool written_ = false;
 };
 

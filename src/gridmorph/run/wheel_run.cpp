@@ -1,7 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
-#include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/report/smoothing_text.hpp>
 #include <gridmorph/run/run.hpp>
 #include <gridmorph/run/wheel_run.hpp>
@@ -375,11 +374,21 @@ void WheelRun::make_baseline(ZoneSink const& sink) {
   time("write");
 }
 
-WheelResult WheelRun::result(WheelMade made) {
-  WheelResult out{std::move(made), baseline_, times_, wheel_.n_nodes()};
-  out.notes.insert(out.notes.begin(), notes_.begin(), notes_.end());
-  auto const fields = mapping_notes(case_);
-  out.notes.insert(out.notes.end(), fields.begin(), fields.end());
+RunDocument WheelRun::document(WheelMade const& made) const {
+  RunDocument out = document_of(case_);
+  out.nodes = wheel_.n_nodes();
+  out.times = times_;
+  for (auto const& notes : {notes_, made.notes, mapping_notes(case_)})
+    out.notes.insert(out.notes.end(), notes.begin(), notes.end());
+  out.guarded = guarded_.json;
+  out.baseline = baseline_;
+  out.wheel = {{}, made.passages, made.whole, made.gap.distance};
+  for (std::size_t r = 0; r < rows_.rows.size(); ++r) {
+    WheelRow const& row = rows_.rows[r];
+    auto& told = out.wheel->rows.emplace_back(RowOfPassages{{}, setup_.blades[r].passages, row.passages, {}});
+    for (int const z : row.zones) told.zones.push_back(mesh_.zones[std::size_t(z)].name);
+    if (row.pitch.is_straight()) told.pitch = row.pitch.shift();
+  }
   return out;
 }
 
@@ -432,25 +441,6 @@ std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const
 bool any_inverted(WheelMade const& made) {
   return !made.whole.certificate->holds() || std::any_of(made.passages.begin(), made.passages.end(),
                                                          [](auto const& p) { return newly_inverted(p.quality) > 0; });
-}
-
-std::string wheel_text(WheelRun const& run, WheelResult const& result) {
-  std::string text;
-  for (auto const& note : result.notes) text += "note: " + note + "\n";
-  text += describe_rows(run.sector().mesh(), run.rows(), run.setup()) + "\n" + passage_table(result);
-  text += certificate_text(result.whole) + flat_text(result.whole);
-  text += fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
-                      result.gap.distance);
-  if (auto const tips = wheel_clearances(result); !tips.empty()) text += "\n" + tips;
-  return text + "\n" + format_times(result.times, result.nodes);
-}
-
-nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result) {
-  nlohmann::json json = wheel_json(run.sector().mesh(), run.rows(), run.setup(), result);
-  json["case_file"] = case_file.source.string();
-  json["input"] = case_file.input.string();
-  json.update(run.guarded().json);
-  return json;
 }
 
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what) {

@@ -7,6 +7,7 @@
 #include <gridmorph/run/recipe.hpp>
 #include <gridmorph/run/wheel_passage.hpp>
 #include <gridmorph/run/wheel_text.hpp>
+#include <gridmorph/wheel/seams.hpp>
 #include <gridmorph/wheel/shared_nodes.hpp>
 
 #include <functional>
@@ -17,6 +18,22 @@
 #include <vector>
 
 namespace gridmorph::cli {
+
+/// The passage whose cells came out worst.
+struct WorstPassage {
+  int passage = -1;  ///< none yet
+  Badness badness;
+  Coordinates morphed;  ///< where the sector is
+};
+
+/// A wheel at one time.
+struct WheelMade {
+  std::vector<PassageResult> passages;
+  QualityReport whole;  ///< of the wheel as it is written: certificate and zone names, nothing else
+  SeamGap gap;          ///< the largest of all rows
+  std::vector<std::string> notes;
+  std::optional<WorstPassage> worst = {};  ///< where it was kept
+};
 
 /// Takes a zone of the wheel, in the order of its file.
 using ZoneSink = std::function<void(int zone, double const* x, double const* y, double const* z)>;
@@ -32,8 +49,6 @@ class WheelRun {
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
   /// What went wrong in the first passage with inverted cells.
   [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
-  /// What other recipes and freezing did.
-  [[nodiscard]] Guarded const& guarded() const { return guarded_; }
 
   /// Plans once for all passages and times, measures the baseline, and tries other recipes and freezes the guard where
   /// the case file says so. Throws MotionError where blades in a wave do not come back after a period.
@@ -46,8 +61,8 @@ class WheelRun {
   WheelMade make(int step, ZoneSink const& sink);
   /// The passages as they are in the baseline, each in its place and closed to its neighbours.
   void make_baseline(ZoneSink const& sink);
-  /// What all of it has in common. `made`: of the wheel that is told.
-  WheelResult result(WheelMade made);
+  /// What came out. `made`: the wheel that is told.
+  [[nodiscard]] RunDocument document(WheelMade const& made) const;
   /// Adds the time since the last one to a step of that name.
   void time(std::string const& step);
 
@@ -105,10 +120,6 @@ class WheelRun {
 /// Whether cells are inverted that the baseline has sound.
 bool any_inverted(WheelMade const& made);
 
-/// What `gridmorph wheel` prints for a wheel at one time.
-std::string wheel_text(WheelRun const& run, WheelResult const& result);
-/// The same for its report.
-nlohmann::json wheel_json(WheelRun const& run, CaseFile const& case_file, WheelResult const& result);
 /// Why a wheel is not written.
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what);
 

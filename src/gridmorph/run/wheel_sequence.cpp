@@ -7,7 +7,6 @@
 #include <gridmorph/run/wheel_run.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <deque>
 #include <memory>
@@ -62,20 +61,6 @@ class WheelFiles {
   std::deque<io::OutputFile> files_;
 };
 
-/// "step 3, passage 2: ...", of all steps.
-std::vector<std::string> failures_of_steps(std::vector<WheelStep> const& steps) {
-  std::vector<std::string> out;
-  for (std::size_t s = 0; s < steps.size(); ++s)
-    for (auto const& failure : steps[s].failures) out.push_back(fmt::format("step {}, {}", s + 1, failure));
-  constexpr std::size_t most = 16;
-  if (out.size() > most) {
-    std::size_t const more = out.size() - most;
-    out.resize(most);
-    out.push_back(fmt::format("{} more; the report has them", more));
-  }
-  return out;
-}
-
 class WheelSequence {
  public:
   WheelSequence(CaseFile const& case_file, SequenceOptions options, Console& console, std::string const& typed)
@@ -91,8 +76,9 @@ class WheelSequence {
     run_.prepare();
     make_steps();
     written_ = !inverted_ || case_file_.guard.write_inverted;
-    result_ = run_.result(std::move(worst_made_));
-    if (page_) draw_wheel_page(run_, case_file_, result_, *page_, console_);
+    document_ = run_.document(worst_made_);
+    document_.sequence = std::move(sequence_);
+    if (page_) draw_wheel_page(run_, case_file_, *worst_made_.worst, document_, *page_, console_);
     return end();
   }
 
@@ -112,56 +98,29 @@ class WheelSequence {
       files_->add([&](ZoneSink const& sink) { made = run_.make(step, sink); });
     run_.time("write");
     inverted_ = inverted_ || any_inverted(made);
-    steps_.push_back(wheel_step(options_.time_at(step), made));
-    if (step > 0 && !steps_.back().worse_than(steps_[worst_])) return;
-    worst_ = steps_.size() - 1;
+    sequence_.steps.push_back(wheel_step(options_.time_at(step), made.passages));
+    if (step > 0 && !is_worse(sequence_.steps.back(), sequence_.steps[sequence_.worst])) return;
+    sequence_.worst = sequence_.steps.size() - 1;
     worst_made_ = std::move(made);
   }
 
-  [[nodiscard]] nlohmann::json json() const {
-    nlohmann::json json = wheel_json(run_, case_file_, result_);
-    nlohmann::json list = wheel_steps_json(steps_);
-    for (std::size_t s = 0; s < steps_.size() && one_file_per_step(options_); ++s)
-      list[s]["file"] = step_path(options_, int(s)).string();
-    json["sequence"] = {{"period", options_.period},
-                        {"periods", options_.periods},
-                        {"worst_step", worst_ + 1},
-                        {"steps", std::move(list)}};
-    return json;
-  }
-
-  [[nodiscard]] std::string text() const {
-    std::string const tips = wheel_clearances(steps_);
-    return wheel_steps_table(steps_) + "\nall steps\n\n" + passages_over_time(steps_, result_) +
-           (tips.empty() ? "" : "\n" + tips) + fmt::format("\nstep {}, the worst one\n\n", worst_ + 1) +
-           wheel_text(run_, result_);
-  }
-
   int end() {
-    OutputOptions const& outputs = case_file_.output_options;
-    std::vector<std::string> const failures = failures_of_steps(steps_);
-    return conclude(
-        {.output = options_.output,
-         .report = outputs.report,
-         .page = outputs.page,
-         .written = written_,
-         .falls_short = !failures.empty(),
-         .json = [&] { return json(); },
-         .page_text =
-             [&](nlohmann::json const& report) { return page_->text(wheel_page_json(case_file_, result_, report)); },
-         .write =
-             [&] {
-               if (written_) files_->commit();
-             },
-         .text = [&] { return text(); },
-         .wrote = wrote_steps(options_),
-         .also_wrote = wrote_report(outputs.report) + wrote_report(outputs.page),
-         .warnings = failures,
-         .refusal =
-             [&] {
-               return wheel_refusal(run_, options_.output, "steps have cells inverted that were not in the baseline");
-             }},
-        console_);
+    return conclude({.document = document_,
+                     .options = case_file_.output_options,
+                     .output = options_.output,
+                     .page = page_ ? &*page_ : nullptr,
+                     .written = written_,
+                     .write =
+                         [&] {
+                           if (written_) files_->commit();
+                         },
+                     .wrote = wrote_steps(options_),
+                     .refusal =
+                         [&] {
+                           return wheel_refusal(run_, options_.output,
+                                                "steps have cells inverted that were not in the baseline");
+                         }},
+                    console_);
   }
 
   CaseFile const& case_file_;
@@ -170,10 +129,9 @@ class WheelSequence {
   std::optional<RunPage> page_;
   WheelRun run_;
   std::optional<WheelFiles> files_;
-  std::vector<WheelStep> steps_;
-  std::size_t worst_ = 0;
+  MorphedSequence sequence_{options_, {}, 0};
   WheelMade worst_made_;
-  WheelResult result_;
+  RunDocument document_;
   bool inverted_ = false, written_ = false;
 };
 

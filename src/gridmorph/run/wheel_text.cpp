@@ -1,12 +1,11 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/report/measure_text.hpp>
 #include <gridmorph/report/quality_json.hpp>
-#include <gridmorph/run/run.hpp>
+#include <gridmorph/report/quality_table.hpp>
+#include <gridmorph/run/recipe.hpp>
 #include <gridmorph/run/wheel_text.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -15,43 +14,16 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> zone_names(Mesh const& mesh, WheelRow const& row) {
-  std::vector<std::string> out;
-  for (int const z : row.zones) out.push_back(mesh.zones[z].name);
-  return out;
-}
-
 std::string blades_text(std::vector<std::string> const& blades) {
   std::string out;
   for (auto const& blade : blades) out += (out.empty() ? "" : ", ") + (blade.empty() ? "-" : blade);
   return out;
 }
 
-double smallest(QualityReport const& q, Measure m) {
-  return q.near_field.cells == 0 ? q.far_field[m].min : std::min(q.near_field[m].min, q.far_field[m].min);
-}
-
-PassageStep passage_step(PassageResult const& passage) {
-  QualityReport const& q = passage.quality;
-  PassageStep out{passage.largest_displacement,
-                  smallest(q, Measure::determinant_3x3x3),
-                  smallest(q, Measure::minimum_angle_deg),
-                  newly_inverted(q),
-                  {},
-                  {},
-                  {},
-                  passage.clearances};
-  MeasureStatistics const* worst = nullptr;
-  for (auto const* region : {&q.near_field, &q.far_field}) {
-    auto const& measure = (*region)[Measure::determinant_3x3x3];
-    if (measure.worst_zone >= 0 && (worst == nullptr || measure.worst < worst->worst)) worst = &measure;
-  }
-  if (worst == nullptr) return out;
-  out.place = worst_place(q, *worst);
-  out.zone = q.zone_names.at(std::size_t(worst->worst_zone));
-  for (int const index : worst->worst_cell) out.cell.push_back(index + 1);
-  if (q.unstructured) out.cell.resize(1);
-  return out;
+std::size_t width_of_blades(std::vector<PassageResult> const& passages) {
+  std::size_t width = 5;
+  for (auto const& p : passages) width = std::max(width, blades_text(p.blades).size());
+  return width;
 }
 
 /// Tips of all passages, named by them. `passages`: whatever has clearances.
@@ -68,8 +40,8 @@ std::vector<TipClearance> all_tips(Passages const& passages) {
 
 double told(TipClearance const& tip) { return tip.by_rule ? tip.by_rule->smallest : tip.after.smallest; }
 
-/// "smallest of all: 0.0012, passage 3: rotor"
-std::string smallest_of_all(std::vector<std::vector<TipClearance>> const& steps) {
+/// A table of tips and "smallest of all: 0.0012, passage 3: rotor"; empty without tips.
+std::string clearances_text(std::string const& table, std::vector<std::vector<TipClearance>> const& steps) {
   TipClearance const* least = nullptr;
   std::size_t at = 0;
   for (std::size_t s = 0; s < steps.size(); ++s)
@@ -80,196 +52,151 @@ std::string smallest_of_all(std::vector<std::vector<TipClearance>> const& steps)
       }
   if (least == nullptr) return {};
   std::string const step = steps.size() > 1 ? fmt::format("step {}, ", at + 1) : "";
-  return fmt::format("smallest of all: {:.4g}, {}{}\n", told(*least), step, least->name);
+  return "\n" + table + fmt::format("smallest of all: {:.4g}, {}{}\n", told(*least), step, least->name);
 }
 
-std::string line(std::string const& passage, std::string const& blade, std::size_t width,
-                 std::string const& displacement, QualityReport const& q) {
-  auto const largest = [&](Measure m) { return std::max(q.near_field[m].max, q.far_field[m].max); };
-  std::string const aspect_ratio = q.fast ? "-" : fmt::format("{:.4g}", largest(Measure::aspect_ratio));
-  return fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12}\n", passage, blade, width, displacement,
-                     q.near_field.inverted + q.far_field.inverted, smallest(q, Measure::determinant_3x3x3),
-                     smallest(q, Measure::minimum_angle_deg), aspect_ratio);
+std::string rows_text(std::vector<RowOfPassages> const& rows) {
+  std::string text;
+  for (RowOfPassages const& row : rows) {
+    auto const zones = quote_list(row.zones, 6);
+    if (row.pitch)
+      text += fmt::format("straight row of {}: {} passages, each shifted by {}\n", zones, row.passages,
+                          to_text(*row.pitch, 6));
+    else
+      text += row.passages_of_wheel != 1
+                  ? fmt::format("row of {}: {} of {} passages\n", zones, row.passages, row.passages_of_wheel)
+                  : fmt::format("{}: no periodic interface, kept as it is\n", zones);
+  }
+  return text;
 }
 
-/// {"value", "zone", "cell" or "element"}; null where nothing was measured.
-nlohmann::json min_determinant_json(PassageStep const& passage) {
-  if (passage.zone.empty()) return nullptr;
-  nlohmann::json out{{"value", passage.determinant}, {"zone", passage.zone}};
-  if (passage.cell.size() == 1)
-    out["element"] = passage.cell[0];
-  else
-    out["cell"] = passage.cell;
-  return out;
+/// One line per passage: blades, displacement, worst cells; near and far field together.
+std::string passage_table(std::vector<PassageResult> const& passages, QualityReport const& baseline) {
+  std::size_t const width = width_of_blades(passages);
+  std::string text = fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11}  {:>9}  {:>12}\n", "passage", "blade", width,
+                                 "displacement", "inverted", "determinant", "angle", "aspect ratio");
+  auto const add = [&](std::string const& passage, std::string const& blade, std::string const& displacement,
+                       QualityReport const& q) {
+    auto const worst = morphed_step(0, q, {});
+    double const aspect_ratio =
+        std::max(q.near_field[Measure::aspect_ratio].max, q.far_field[Measure::aspect_ratio].max);
+    text += fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11.4g}  {:>9.4g}  {:>12}\n", passage, blade, width,
+                        displacement, q.near_field.inverted + q.far_field.inverted, worst.determinant, worst.angle_deg,
+                        q.fast ? "-" : fmt::format("{:.4g}", aspect_ratio));
+  };
+  add("baseline", "", "", baseline);
+  for (std::size_t p = 0; p < passages.size(); ++p)
+    add(std::to_string(p + 1), blades_text(passages[p].blades), fmt::format("{:.4g}", passages[p].largest_displacement),
+        passages[p].quality);
+  return text;
+}
+
+/// Which of two passages is the worse one: inverted cells first.
+bool is_worse(MorphedStep const& a, MorphedStep const& b) {
+  return std::pair(-a.newly_inverted, a.determinant) < std::pair(-b.newly_inverted, b.determinant);
 }
 
 }  // namespace
 
-std::string describe_rows(Mesh const& mesh, WheelRows const& rows, WheelSetup const& setup) {
-  std::string text;
-  for (std::size_t r = 0; r < rows.rows.size(); ++r) {
-    auto const zones = quote_list(zone_names(mesh, rows.rows[r]), 6);
-    if (RowPitch const& pitch = rows.rows[r].pitch; pitch.is_straight()) {
-      text += fmt::format("straight row of {}: {} passages, each shifted by {}\n", zones, setup.blades[r].passages,
-                          to_text(pitch.shift(), 6));
-      continue;
-    }
-    text += rows.rows[r].periodic()
-                ? fmt::format("row of {}: {} of {} passages\n", zones, setup.blades[r].passages, rows.rows[r].passages)
-                : fmt::format("{}: no periodic interface, kept as it is\n", zones);
-  }
-  return text;
-}
-
-std::string passage_table(WheelResult const& result) {
-  std::size_t width = 5;
-  for (auto const& p : result.passages) width = std::max(width, blades_text(p.blades).size());
-  std::string text = fmt::format("{:>8}  {:<{}}  {:>12}  {:>8}  {:>11}  {:>9}  {:>12}\n", "passage", "blade", width,
-                                 "displacement", "inverted", "determinant", "angle", "aspect ratio");
-  text += line("baseline", "", width, "", result.baseline);
-  for (std::size_t p = 0; p < result.passages.size(); ++p)
-    text += line(std::to_string(p + 1), blades_text(result.passages[p].blades), width,
-                 fmt::format("{:.4g}", result.passages[p].largest_displacement), result.passages[p].quality);
-  return text;
-}
-
-std::string wheel_clearances(WheelMade const& made) {
-  auto const tips = all_tips(made.passages);
-  return tips.empty() ? std::string() : clearance_table(tips) + smallest_of_all({tips});
-}
-
-std::string wheel_clearances(std::vector<WheelStep> const& steps) {
-  std::vector<std::vector<TipClearance>> tips;
-  for (WheelStep const& step : steps) tips.push_back(all_tips(step.passages));
-  return clearance_steps_table(tips) + smallest_of_all(tips);
-}
-
-WheelStep wheel_step(double time, WheelMade const& made) {
-  WheelStep out{time, {}, failures_of(made)};
-  for (auto const& passage : made.passages) {
-    out.passages.push_back(passage_step(passage));
-    if (out.passages.back().worse_than(out.passages[out.worst])) out.worst = out.passages.size() - 1;
+SequenceStep wheel_step(double time, std::vector<PassageResult> const& passages) {
+  SequenceStep out{time, {}, failures_of(passages)};
+  for (PassageResult const& passage : passages) {
+    out.passages.push_back(morphed_step(passage.largest_displacement, passage.quality, passage.clearances));
+    if (is_worse(out.passages.back(), out.passages[out.worst])) out.worst = out.passages.size() - 1;
   }
   return out;
 }
 
-double WheelStep::largest_displacement() const {
-  double out = 0;
-  for (PassageStep const& passage : passages) out = std::max(out, passage.largest_displacement);
-  return out;
+bool is_worse(SequenceStep const& a, SequenceStep const& b) {
+  return is_worse(a.passages[a.worst], b.passages[b.worst]);
 }
 
-Index WheelStep::newly_inverted() const {
-  Index out = 0;
-  for (PassageStep const& passage : passages) out += passage.newly_inverted;
-  return out;
-}
-
-std::size_t worst_step(std::vector<WheelStep> const& steps) {
+std::size_t worst_step(std::vector<SequenceStep> const& steps) {
   std::size_t worst = 0;
   for (std::size_t s = 1; s < steps.size(); ++s)
-    if (steps[s].worse_than(steps[worst])) worst = s;
+    if (is_worse(steps[s], steps[worst])) worst = s;
   return worst;
 }
 
-std::vector<std::string> failures_of(WheelMade const& made) {
+std::size_t worst_passage(std::vector<PassageResult> const& passages) {
+  auto const better = [](auto const& a, auto const& b) { return badness_of(a.quality) < badness_of(b.quality); };
+  return std::size_t(std::max_element(passages.begin(), passages.end(), better) - passages.begin());
+}
+
+std::vector<std::string> failures_of(std::vector<PassageResult> const& passages) {
   std::vector<std::string> out;
-  for (std::size_t p = 0; p < made.passages.size(); ++p)
-    for (auto const& s : made.passages[p].shortfalls)
+  for (std::size_t p = 0; p < passages.size(); ++p)
+    for (auto const& s : passages[p].shortfalls)
       if (s.severity == Shortfall::Severity::failure) out.push_back(fmt::format("passage {}: {}", p + 1, s.message));
   return out;
 }
 
-std::string wheel_steps_table(std::vector<WheelStep> const& steps) {
-  constexpr std::size_t most_rows = 100;
-  std::string text = fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {:>7}  {}\n", "step", "time",
-                                 "largest displacement", "smallest determinant", "newly inverted", "passage", "at");
-  std::size_t const stride = (steps.size() + most_rows - 1) / most_rows, worst = worst_step(steps);
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    if (s % stride != 0 && s != worst) continue;
-    WheelStep const& step = steps[s];
-    PassageStep const& at = step.passages[step.worst];
-    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {:>7}  {}{}\n", s + 1, step.time,
-                        step.largest_displacement(), at.determinant, step.newly_inverted(), step.worst + 1, at.place,
-                        s == worst ? "  <- worst" : "");
+std::vector<std::string> failures_of(std::vector<SequenceStep> const& steps) {
+  std::vector<std::string> out;
+  for (std::size_t s = 0; s < steps.size(); ++s)
+    for (auto const& failure : steps[s].failures) out.push_back(fmt::format("step {}, {}", s + 1, failure));
+  constexpr std::size_t most = 16;
+  if (out.size() > most) {
+    std::size_t const more = out.size() - most;
+    out.resize(most);
+    out.push_back(fmt::format("{} more; the report has them", more));
   }
-  return text;
+  return out;
 }
 
-std::string passages_over_time(std::vector<WheelStep> const& steps, WheelMade const& made) {
-  std::size_t width = 5;
-  for (auto const& p : made.passages) width = std::max(width, blades_text(p.blades).size());
+std::string wheel_text(MorphedWheel const& wheel, QualityReport const& baseline) {
+  auto const tips = all_tips(wheel.passages);
+  return rows_text(wheel.rows) + "\n" + passage_table(wheel.passages, baseline) + certificate_text(wheel.whole) +
+         flat_text(wheel.whole) +
+         fmt::format("\nlargest distance of coincident nodes before one took over the other's position: {:.3g}\n",
+                     wheel.largest_seam_gap) +
+         clearances_text(clearance_table(tips), {tips});
+}
+
+std::string wheel_over_time_text(std::vector<SequenceStep> const& steps, std::vector<PassageResult> const& passages) {
+  std::size_t const width = width_of_blades(passages);
   std::string text =
       fmt::format("{:>8}  {:<{}}  {:>20}  {:>7}  {:>20}  {:>7}  {:>14}\n", "passage", "blade", width,
                   "largest displacement", "at step", "smallest determinant", "at step", "newly inverted");
-  for (std::size_t p = 0; p < made.passages.size(); ++p) {
+  for (std::size_t p = 0; p < passages.size(); ++p) {
     std::size_t farthest = 0, worst = 0;
     Index inverted = 0;
     for (std::size_t s = 0; s < steps.size(); ++s) {
-      PassageStep const& now = steps[s].passages[p];
+      MorphedStep const& now = steps[s].passages[p];
       if (now.largest_displacement > steps[farthest].passages[p].largest_displacement) farthest = s;
-      if (now.worse_than(steps[worst].passages[p])) worst = s;
+      if (is_worse(now, steps[worst].passages[p])) worst = s;
       inverted = std::max(inverted, now.newly_inverted);
     }
     text += fmt::format("{:>8}  {:<{}}  {:>20.6g}  {:>7}  {:>20.4f}  {:>7}  {:>14}\n", p + 1,
-                        blades_text(made.passages[p].blades), width, steps[farthest].passages[p].largest_displacement,
+                        blades_text(passages[p].blades), width, steps[farthest].passages[p].largest_displacement,
                         farthest + 1, steps[worst].passages[p].determinant, worst + 1, inverted);
   }
-  return text;
+  std::vector<std::vector<TipClearance>> tips;
+  for (SequenceStep const& step : steps) tips.push_back(all_tips(step.passages));
+  return text + clearances_text(clearance_steps_table(tips), tips);
 }
 
-nlohmann::json wheel_steps_json(std::vector<WheelStep> const& steps) {
-  nlohmann::json list = nlohmann::json::array();
-  for (std::size_t s = 0; s < steps.size(); ++s) {
-    nlohmann::json passages = nlohmann::json::array();
-    for (std::size_t p = 0; p < steps[s].passages.size(); ++p) {
-      PassageStep const& now = steps[s].passages[p];
-      passages.push_back({{"passage", p + 1},
-                          {"largest_displacement", now.largest_displacement},
-                          {"min_determinant", now.determinant},
-                          {"min_angle_deg", now.angle_deg},
-                          {"newly_inverted", now.newly_inverted}});
-      if (!now.clearances.empty()) passages.back()["clearances"] = clearance_json(now.clearances);
-    }
-    WheelStep const& step = steps[s];
-    list.push_back({{"step", s + 1},
-                    {"time", step.time},
-                    {"largest_displacement", step.largest_displacement()},
-                    {"newly_inverted", step.newly_inverted()},
-                    {"worst_passage", step.worst + 1},
-                    {"min_determinant", min_determinant_json(step.passages[step.worst])},
-                    {"shortfall", step.failures.empty() ? nlohmann::json() : nlohmann::json(step.failures.front())},
-                    {"shortfalls", step.failures},
-                    {"passages", std::move(passages)}});
-  }
-  return list;
-}
-
-nlohmann::json wheel_json(Mesh const& mesh, WheelRows const& rows, WheelSetup const& setup, WheelResult const& result) {
-  nlohmann::json json{{"gridmorph", GRIDMORPH_VERSION}, {"nodes", result.nodes}, {"notes", result.notes}};
-  json["rows"] = nlohmann::json::array();
-  for (std::size_t r = 0; r < rows.rows.size(); ++r) {
-    nlohmann::json row{{"zones", zone_names(mesh, rows.rows[r])}, {"passages", setup.blades[r].passages}};
-    if (Vec3 const& shift = rows.rows[r].pitch.shift(); rows.rows[r].pitch.is_straight())
-      row["pitch"] = {shift.x, shift.y, shift.z};
+nlohmann::json wheel_json(MorphedWheel const& wheel) {
+  nlohmann::json json{{"worst_passage", worst_passage(wheel.passages) + 1},
+                      {"certificate", certificate_json(wheel.whole)},
+                      {"largest_seam_gap", wheel.largest_seam_gap}};
+  auto& rows = json["rows"] = nlohmann::json::array();
+  for (RowOfPassages const& row : wheel.rows) {
+    rows.push_back({{"zones", row.zones}, {"passages", row.passages}});
+    if (row.pitch)
+      rows.back()["pitch"] = {row.pitch->x, row.pitch->y, row.pitch->z};
     else
-      row["passages_of_wheel"] = rows.rows[r].passages;
-    json["rows"].push_back(std::move(row));
+      rows.back()["passages_of_wheel"] = row.passages_of_wheel;
   }
-  json["baseline"] = result.baseline;
-  json["passages"] = nlohmann::json::array();
-  for (std::size_t p = 0; p < result.passages.size(); ++p) {
-    auto const& passage = result.passages[p];
-    json["passages"].push_back({{"passage", p + 1},
-                                {"blades", passage.blades},
-                                {"largest_displacement", passage.largest_displacement},
-                                {"quality", passage.quality},
-                                {"shortfalls", shortfalls_json(passage.shortfalls)}});
-    if (!passage.clearances.empty()) json["passages"].back()["clearances"] = clearance_json(passage.clearances);
+  auto& passages = json["passages"] = nlohmann::json::array();
+  for (PassageResult const& passage : wheel.passages) {
+    passages.push_back({{"passage", passages.size() + 1},
+                        {"blades", passage.blades},
+                        {"largest_displacement", passage.largest_displacement},
+                        {"quality", passage.quality},
+                        {"shortfalls", shortfalls_json(passage.shortfalls)}});
+    if (!passage.clearances.empty()) passages.back()["clearances"] = clearance_json(passage.clearances);
   }
-  json["certificate"] = certificate_json(result.whole);
-  json["largest_seam_gap"] = result.gap.distance;
-  json["times"] = times_json(result.times, result.nodes);
   return json;
 }
 
