@@ -2,11 +2,8 @@
 #include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/exit_status.hpp>
 #include <gridmorph/run/output_files.hpp>
-#include <gridmorph/run/run_page.hpp>
 
 #include <fmt/format.h>
-
-#include <optional>
 
 namespace gridmorph::cli {
 

@@ -2,26 +2,25 @@
 #pragma once
 
 #include <gridmorph/run/console.hpp>
-#include <gridmorph/run/run_document.hpp>
+#include <gridmorph/run/run_page.hpp>
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace gridmorph::cli {
-
-class RunPage;
 
 /// What a run has made, and what it says of it.
 struct Ending {
   RunDocument& document;
   OutputOptions const& options;
   std::filesystem::path output;
-  RunPage* page = nullptr;      ///< the report as a page, where one is wanted
-  bool written = false;         ///< the meshes are wanted
-  std::function<void()> write;  ///< puts meshes in place, where they are wanted
-  std::string wrote;            ///< after the text, where the meshes are written
-  std::string also_wrote = {};  ///< after reports, in any case
+  std::optional<RunPage>& page;  ///< the report as a page, where one is wanted
+  bool written = false;          ///< the meshes are wanted
+  std::function<void()> write;   ///< puts meshes in place, where they are wanted
+  std::string wrote;             ///< after the text, where the meshes are written
+  std::string also_wrote = {};   ///< after reports, in any case
   std::function<std::string()> refusal;
 };
 

@@ -174,7 +174,7 @@ class Once {
         {.document = document_,
          .options = options_,
          .output = case_file_.output,
-         .page = page_ ? &*page_ : nullptr,
+         .page = page_,
          .written = written_,
          .write = [&] { write(); },
          .wrote = fmt::format("\nwrote {}\n", case_file_.output.string()) + vtk,

@@ -149,25 +149,19 @@ json sequence_json(MorphedSequence const& sequence, bool of_wheel) {
 /// A row per step, of a wheel with its worst passage; of long sequences evenly spaced steps and the worst.
 std::string steps_table(MorphedSequence const& sequence, bool of_wheel) {
   constexpr std::size_t most_rows = 100;
-  auto const row = [](auto const& step, auto const& time, auto const& displacement, auto const& determinant,
-                      auto const& inverted, std::string const& passage, std::string const& at) {
-    return fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}{}\n", step, time, displacement, determinant, inverted,
-                       passage, at);
-  };
-  auto const passage_text = [&](auto const& passage) {
-    return of_wheel ? fmt::format("{:>7}  ", passage) : std::string();
-  };
-  std::string text = row("step", "time", "largest displacement", "smallest determinant", "newly inverted",
-                         passage_text("passage"), "at");
+  std::string text =
+      fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}at\n", "step", "time", "largest displacement",
+                  "smallest determinant", "newly inverted", of_wheel ? "passage  " : "");
   auto const& steps = sequence.steps;
   std::size_t const stride = (steps.size() + most_rows - 1) / most_rows;
   for (std::size_t s = 0; s < steps.size(); ++s) {
     if (s % stride != 0 && s != sequence.worst) continue;
     SequenceStep const& step = steps[s];
     MorphedStep const& at = step.passages[step.worst];
-    text += row(s + 1, fmt::format("{:.6g}", step.time), fmt::format("{:.6g}", step.largest_displacement()),
-                fmt::format("{:.4f}", at.determinant), step.newly_inverted(), passage_text(step.worst + 1),
-                at.place + (s == sequence.worst ? "  <- worst" : ""));
+    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {}{}{}\n", s + 1, step.time,
+                        step.largest_displacement(), at.determinant, step.newly_inverted(),
+                        of_wheel ? fmt::format("{:>7}  ", step.worst + 1) : "", at.place,
+                        s == sequence.worst ? "  <- worst" : "");
   }
   return text;
 }

@@ -210,7 +210,7 @@ class Sequence {
     return conclude({.document = document_,
                      .options = case_file_.output_options,
                      .output = options_.output,
-                     .page = page_ ? &*page_ : nullptr,
+                     .page = page_,
                      .written = written_,
                      .write =
                          [&] {

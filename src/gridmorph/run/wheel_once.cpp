@@ -46,7 +46,7 @@ class WheelOnce {
         {.document = document_,
          .options = case_file_.output_options,
          .output = output_,
-         .page = page_ ? &*page_ : nullptr,
+         .page = page_,
          .written = written_,
          .write = [&] { write(); },
          .wrote = fmt::format("\nwrote {}\n", output_.string()),

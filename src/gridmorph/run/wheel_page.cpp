@@ -36,14 +36,15 @@ PatchRoles roles_of_passage(Mesh const& mesh, Motion const& motion) {
 
 }  // namespace
 
-void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, WorstPassage const& worst, RunDocument& document,
+void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, Coordinates const& worst, RunDocument& document,
                      RunPage& page, Console& console) {
   console.progress("drawing the page");
   Stopwatch watch;
   Mesh const& mesh = run.sector().mesh();
   page.begin_passage(run.sector().loaded().pictures(), roles_of_passage(mesh, case_file.motion), mesh.coordinates);
-  page.finish_passage({mesh.coordinates, worst.morphed, run.near(), {}},
-                      document.wheel->passages[std::size_t(worst.passage)].quality, run.sector().loaded().kind().cells);
+  auto const& passages = document.wheel->passages;
+  page.finish_passage({mesh.coordinates, worst, run.near(), {}}, passages[worst_passage(passages)].quality,
+                      run.sector().loaded().kind().cells);
   document.times.push_back({"page", watch.lap()});
 }
 

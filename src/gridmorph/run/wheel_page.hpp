@@ -6,9 +6,9 @@
 
 namespace gridmorph::cli {
 
-/// Pictures and numbers of the worst passage. worst: of a run with keep_worst(), over time that of the worst step. The
+/// Pictures and numbers of the worst passage. worst: where a run with keep_worst() has it, at the worst step. The
 /// console is told, and `document` the time that it took. Cost: as RunPage::finish().
-void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, WorstPassage const& worst, RunDocument& document,
+void draw_wheel_page(WheelRun const& run, CaseFile const& case_file, Coordinates const& worst, RunDocument& document,
                      RunPage& page, Console& console);
 
 }  // namespace gridmorph::cli

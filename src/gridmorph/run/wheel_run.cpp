@@ -261,15 +261,10 @@ PassageResult WheelRun::measure(std::vector<Vec3> const& boundary, Coordinates c
   return passage;
 }
 
-void WheelRun::take_worst(WorstPassage& worst, int passage, QualityReport const& quality,
-                          Coordinates const& morphed) const {
-  Badness const badness = badness_of(quality);
-  if (worst.passage >= 0 && !(worst.badness < badness)) return;
-  worst.passage = passage;
-  worst.badness = badness;
-  if (worst.morphed.size() == 0) worst.morphed = Coordinates(morphed.size());
-  for (auto const& [to, from] : {std::pair(worst.morphed.x, morphed.x), std::pair(worst.morphed.y, morphed.y),
-                                 std::pair(worst.morphed.z, morphed.z)})
+void WheelRun::keep(std::optional<Coordinates>& worst, Coordinates const& morphed) const {
+  if (!worst) worst.emplace(morphed.size());
+  for (auto const& [to, from] :
+       {std::pair(worst->x, morphed.x), std::pair(worst->y, morphed.y), std::pair(worst->z, morphed.z)})
     Kokkos::deep_copy(exec_, to, from);
   exec_.fence();
 }
@@ -282,7 +277,7 @@ std::vector<Seams> WheelRun::new_seams() const {
 }
 
 std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams,
-                                   SeamGap& gap) {
+                                   double& gap) {
   std::map<int, int> zones;
   for (int n = next; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == passage; ++n) {
     int const z = wheel_.zones[n].zone;
@@ -300,7 +295,7 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
     if (passage >= setup_.blades[r].passages) continue;
     seams[r].close(passage, placed_);
     SeamGap const& own = seams[r].largest_gap();
-    if (own.distance > gap.distance) gap = own;
+    gap = std::max(gap, own.distance);
     if (own.distance > tolerance)
       throw MotionError(
           fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
@@ -325,10 +320,10 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
   move_to(step);
   PassageMotions const& motions = plan_->passages();
   WheelMade made;
-  made.whole.certificate.emplace();
-  made.whole.unstructured = baseline_.unstructured;
-  for (Zone const& zone : wheel_.mesh.zones) made.whole.zone_names.push_back(zone.name);
-  if (keeps_worst_) made.worst.emplace();
+  auto& [rows, passages, whole, gap] = made.wheel;
+  whole.certificate.emplace();
+  whole.unstructured = baseline_.unstructured;
+  for (Zone const& zone : wheel_.mesh.zones) whole.zone_names.push_back(zone.name);
   auto seams = new_seams();
   int last = -1, next = 0;
   int const n_passages = motions.n_passages(), n_steps = int(setup_.moments.size());
@@ -341,21 +336,21 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
       GuardReport const relaxed = morph(*plan_, boundary, morphed_);
       last = p;
       int const same = motions.first_alike(p);  // before p: it has been measured
-      made.passages.push_back(same < p ? made.passages[same] : measure(boundary, morphed_));
-      if (same == p && made.worst) take_worst(*made.worst, p, made.passages.back().quality, morphed_);
+      passages.push_back(same < p ? passages[same] : measure(boundary, morphed_));
+      if (keeps_worst_ && same == p && int(worst_passage(passages)) == p) keep(made.worst, morphed_);
       if (same == p && relaxed.before > 0)
         made.notes.push_back(
             fmt::format("passage {}: {} {}; displacements around them are smoothed in {} rounds, {} are left", p + 1,
                         relaxed.before, sector_.loaded().kind().lost, relaxed.rounds, relaxed.after));
     } else {
-      made.passages.push_back(made.passages.back());
+      passages.push_back(passages.back());
     }
-    made.passages.back().blades = blades_of(p);
-    made.passages.back().clearances = clearances_of(p, morphed_);
-    auto const zones = place(p, next, morphed_, seams, made.gap);
+    passages.back().blades = blades_of(p);
+    passages.back().clearances = clearances_of(p, morphed_);
+    auto const zones = place(p, next, morphed_, seams, gap);
     next += int(zones.size());
     time("turn");
-    certify_zones(zones, *made.whole.certificate);
+    certify_zones(zones, *whole.certificate);
     give(zones, sink);
     time("write");
   }
@@ -364,7 +359,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
 
 void WheelRun::make_baseline(ZoneSink const& sink) {
   auto seams = new_seams();
-  SeamGap gap;
+  double gap = 0;
   int next = 0;
   for (int p = 0; p < plan_->passages().n_passages(); ++p) {
     auto const zones = place(p, next, mesh_.coordinates, seams, gap);
@@ -382,7 +377,7 @@ RunDocument WheelRun::document(WheelMade const& made) const {
     out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   out.guarded = guarded_.json;
   out.baseline = baseline_;
-  out.wheel = {{}, made.passages, made.whole, made.gap.distance};
+  out.wheel = made.wheel;
   for (std::size_t r = 0; r < rows_.rows.size(); ++r) {
     WheelRow const& row = rows_.rows[r];
     auto& told = out.wheel->rows.emplace_back(RowOfPassages{{}, setup_.blades[r].passages, row.passages, {}});
@@ -439,8 +434,9 @@ std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const
 }
 
 bool any_inverted(WheelMade const& made) {
-  return !made.whole.certificate->holds() || std::any_of(made.passages.begin(), made.passages.end(),
-                                                         [](auto const& p) { return newly_inverted(p.quality) > 0; });
+  return !made.wheel.whole.certificate->holds() ||
+         std::any_of(made.wheel.passages.begin(), made.wheel.passages.end(),
+                     [](auto const& p) { return newly_inverted(p.quality) > 0; });
 }
 
 std::string wheel_refusal(WheelRun const& run, std::filesystem::path const& output, std::string const& what) {

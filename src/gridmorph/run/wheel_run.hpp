@@ -19,20 +19,11 @@
 
 namespace gridmorph::cli {
 
-/// The passage whose cells came out worst.
-struct WorstPassage {
-  int passage = -1;  ///< none yet
-  Badness badness;
-  Coordinates morphed;  ///< where the sector is
-};
-
 /// A wheel at one time.
 struct WheelMade {
-  std::vector<PassageResult> passages;
-  QualityReport whole;  ///< of the wheel as it is written: certificate and zone names, nothing else
-  SeamGap gap;          ///< the largest of all rows
-  std::vector<std::string> notes;
-  std::optional<WorstPassage> worst = {};  ///< where it was kept
+  MorphedWheel wheel = {};  ///< less its rows
+  std::vector<std::string> notes = {};
+  std::optional<Coordinates> worst = {};  ///< of the worst passage, where the sector is; where it was kept
 };
 
 /// Takes a zone of the wheel, in the order of its file.
@@ -83,11 +74,11 @@ class WheelRun {
   void move_to(int step);
   GuardReport morph(PassagePlan& plan, std::vector<Vec3> const& boundary, Coordinates& morphed);
   PassageResult measure(std::vector<Vec3> const& boundary, Coordinates const& morphed);
-  void take_worst(WorstPassage& worst, int passage, QualityReport const& quality, Coordinates const& morphed) const;
+  void keep(std::optional<Coordinates>& worst, Coordinates const& morphed) const;
   [[nodiscard]] std::vector<Seams> new_seams() const;
   /// Puts a passage where it stands; `next`: its first zone of the wheel. Returns its zones of the wheel by those of
   /// the sector.
-  std::map<int, int> place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams, SeamGap& gap);
+  std::map<int, int> place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams, double& gap);
   void give(std::map<int, int> const& zones, ZoneSink const& sink) const;
   void certify_zones(std::map<int, int> const& zones, Certificate& wheel);
   [[nodiscard]] std::vector<std::string> blades_of(int passage) const;

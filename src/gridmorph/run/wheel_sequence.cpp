@@ -98,7 +98,7 @@ class WheelSequence {
       files_->add([&](ZoneSink const& sink) { made = run_.make(step, sink); });
     run_.time("write");
     inverted_ = inverted_ || any_inverted(made);
-    sequence_.steps.push_back(wheel_step(options_.time_at(step), made.passages));
+    sequence_.steps.push_back(wheel_step(options_.time_at(step), made.wheel.passages));
     if (step > 0 && !is_worse(sequence_.steps.back(), sequence_.steps[sequence_.worst])) return;
     sequence_.worst = sequence_.steps.size() - 1;
     worst_made_ = std::move(made);
@@ -108,7 +108,7 @@ class WheelSequence {
     return conclude({.document = document_,
                      .options = case_file_.output_options,
                      .output = options_.output,
-                     .page = page_ ? &*page_ : nullptr,
+                     .page = page_,
                      .written = written_,
                      .write =
                          [&] {
