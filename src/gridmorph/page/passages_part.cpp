@@ -22,10 +22,6 @@ std::string blade_names(json const& passage) {
   return out;
 }
 
-Index newly_inverted_in(json const& quality) {
-  return quality["near_field"]["newly_inverted"].get<Index>() + quality["far_field"]["newly_inverted"].get<Index>();
-}
-
 std::string worst_value(json const& worst) { return worst.is_null() ? "\u2013" : number(worst["value"]); }
 
 std::string failures_of_passage(json const& passage) {
@@ -35,10 +31,8 @@ std::string failures_of_passage(json const& passage) {
   return out;
 }
 
-/// A row per passage: the largest displacement and the smallest determinant of all steps, and the steps they are at.
-/// passages: those of the worst step, for the names of their blades.
-std::string passages_over_time(json const& sequence, json const& passages) {
-  json const& steps = sequence["steps"];
+/// A row per passage: the largest displacement and the worst of all steps. blades: passages of the worst step.
+std::string passages_over_time(json const& passages, json const& blades) {
   Table table({{"passage", true},
                {"blade"},
                {"largest displacement", true},
@@ -47,26 +41,10 @@ std::string passages_over_time(json const& sequence, json const& passages) {
                {"at step", true},
                {"newly inverted, at most", true}});
   for (std::size_t p = 0; p < passages.size(); ++p) {
-    json const *farthest = nullptr, *worst = nullptr, *most = nullptr;
-    Index farthest_step = 0, worst_step = 0;
-    for (json const& step : steps) {
-      json const& now = step["passages"][p];
-      auto const beyond = [&](json const* other, char const* key) {
-        return other == nullptr || now[key].get<double>() > (*other)[key].get<double>();
-      };
-      if (beyond(farthest, "largest_displacement")) {
-        farthest = &now;
-        farthest_step = step["step"].get<Index>();
-      }
-      if (worst == nullptr || now["min_determinant"].get<double>() < (*worst)["min_determinant"].get<double>()) {
-        worst = &now;
-        worst_step = step["step"].get<Index>();
-      }
-      if (beyond(most, "newly_inverted")) most = &now;
-    }
-    table.add({std::to_string(p + 1), escaped(blade_names(passages[p])), number((*farthest)["largest_displacement"]),
-               std::to_string(farthest_step), number((*worst)["min_determinant"]), std::to_string(worst_step),
-               count((*most)["newly_inverted"])});
+    json const& all = passages[p];
+    table.add({std::to_string(p + 1), escaped(blade_names(blades[p])), number(all["largest_displacement"]),
+               std::to_string(all["farthest_step"].get<Index>()), number(all["min_determinant"]),
+               std::to_string(all["worst_step"].get<Index>()), count(all["newly_inverted"])});
   }
   return "<h3>Over all steps</h3>\n" + table.html();
 }
@@ -79,7 +57,7 @@ std::string passages_part(ReportPage const& page) {
   auto const worst = page.report["worst_passage"].get<std::size_t>();
   std::string out = fmt::format("<section id=\"passages\"><h2>The {} passages</h2>\n", passages.size());
   if (page.report.contains("sequence"))
-    out += passages_over_time(page.report["sequence"], passages) +
+    out += passages_over_time(page.report["sequence"]["passages"], passages) +
            fmt::format("<h3>At step {}, the worst one</h3>\n", page.report["sequence"]["worst_step"].get<Index>());
   Table table({{"passage", true},
                {"blade"},
@@ -96,7 +74,7 @@ std::string passages_part(ReportPage const& page) {
     table.add({number_of == worst ? fmt::format("<b>{}</b>", number_of) : std::to_string(number_of),
                escaped(blade_names(passage)), number(passage["largest_displacement"]), worst_value(determinant),
                determinant.is_null() ? "" : escaped(place_of(determinant)),
-               worst_value(angle) + (angle.is_null() ? "" : "\u00b0"), count(newly_inverted_in(passage["quality"])),
+               worst_value(angle) + (angle.is_null() ? "" : "\u00b0"), count(passage["newly_inverted"]),
                escaped(failures_of_passage(passage))});
   }
   json const before = worst_of(page.report["baseline"], "determinant_3x3x3", false);

@@ -93,7 +93,8 @@ struct StepFigure {
 };
 
 struct ReportPage {
-  nlohmann::json report;  ///< as --report writes it; of wheels with the worst passage as "morphed"
+  nlohmann::json
+      report;  ///< as --report writes it; of wheels with those of the worst passage as "morphed" and "clearances"
   bool structured = true;
   std::string kind;  ///< "cells" or "elements"
   double mesh_size = 0, largest_displacement = 0;

@@ -73,16 +73,10 @@ Index newly_inverted_of(json const& morphed) {
   return out;
 }
 
-Index newly_inverted_of_wheel(json const& report) {
-  Index out = 0;
-  for (json const& passage : report["passages"]) out += newly_inverted_of(passage["quality"]);
-  return out;
-}
-
 /// " in 2 of 36 passages", " in any of 36 passages".
 std::string of_passages(json const& passages, bool inverted, bool falls_short) {
   auto const fails = [&](json const& passage) {
-    if (inverted) return newly_inverted_of(passage["quality"]) > 0;
+    if (inverted) return passage["newly_inverted"].get<Index>() > 0;
     return std::any_of(passage["shortfalls"].begin(), passage["shortfalls"].end(),
                        [](json const& s) { return s["severity"] == "failure"; });
   };
@@ -111,7 +105,9 @@ Verdict verdict_of(ReportPage const& page) {
                          : fmt::format(" in any of {} steps", n);
   }
   if (report.contains("passages")) {
-    inverted = std::max(inverted, newly_inverted_of_wheel(report));
+    Index of_all = 0;
+    for (json const& passage : report["passages"]) of_all += passage["newly_inverted"].get<Index>();
+    inverted = std::max(inverted, of_all);
     if (!report.contains("sequence")) steps = of_passages(report["passages"], inverted > 0, falls_short);
   }
   if (inverted > 0) {

@@ -140,10 +140,12 @@ json sequence_json(MorphedSequence const& sequence, bool of_wheel) {
     if (one_file_per_step(options)) now["file"] = step_path(options, int(list.size())).string();
     list.push_back(std::move(now));
   }
-  return {{"period", options.period},
-          {"periods", options.periods},
-          {"worst_step", sequence.worst + 1},
-          {"steps", std::move(list)}};
+  json out{{"period", options.period},
+           {"periods", options.periods},
+           {"worst_step", sequence.worst + 1},
+           {"steps", std::move(list)}};
+  if (of_wheel) out["passages"] = passages_over_time_json(sequence.steps);
+  return out;
 }
 
 /// A row per step, of a wheel with its worst passage; of long sequences evenly spaced steps and the worst.
@@ -257,7 +259,7 @@ std::string run_text(RunDocument const& document) {
                             format_times(document.times, document.nodes);
   if (!document.sequence) return wheel;
   return steps_table(*document.sequence, true) + "\nall steps\n\n" +
-         wheel_over_time_text(document.sequence->steps, document.wheel->passages) +
+         passages_over_time_text(document.sequence->steps, document.wheel->passages) +
          fmt::format("\nstep {}, the worst one\n\n", document.sequence->worst + 1) + wheel;
 }
 

@@ -367,9 +367,10 @@ void RunPage::make_sections(PageMeshes const& meshes) {
 std::string RunPage::text(nlohmann::json const& report) {
   page_.report = report;
   if (report.contains("passages")) {  // what is shown of quality is that of the worst one
-    nlohmann::json& shown = page_.report["morphed"];
-    shown = report["passages"][report["worst_passage"].get<std::size_t>() - 1]["quality"];
-    shown["certificate"] = report["certificate"];
+    nlohmann::json const& worst = report["passages"][report["worst_passage"].get<std::size_t>() - 1];
+    page_.report["morphed"] = worst["quality"];
+    page_.report["morphed"]["certificate"] = report["certificate"];
+    if (worst.contains("clearances")) page_.report["clearances"] = worst["clearances"];
   }
   return page::page_text(page_);
 }

@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/text.hpp>
+#include <gridmorph/quality/newly_inverted.hpp>
 #include <gridmorph/report/quality_json.hpp>
 #include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/run/recipe.hpp>
@@ -96,6 +97,26 @@ bool is_worse(MorphedStep const& a, MorphedStep const& b) {
   return std::pair(-a.newly_inverted, a.determinant) < std::pair(-b.newly_inverted, b.determinant);
 }
 
+/// What a passage comes to in all steps, which count from 1 on.
+struct OverTime {
+  double displacement = 0;  ///< largest
+  double determinant = 0;   ///< of the worst step
+  std::size_t farthest = 1, worst = 1;
+  Index newly_inverted = 0;
+};
+OverTime over_time(std::vector<SequenceStep> const& steps, std::size_t passage) {
+  auto const at = [&](std::size_t step) -> MorphedStep const& { return steps[step - 1].passages[passage]; };
+  OverTime out;
+  for (std::size_t s = 1; s <= steps.size(); ++s) {
+    if (at(s).largest_displacement > at(out.farthest).largest_displacement) out.farthest = s;
+    if (is_worse(at(s), at(out.worst))) out.worst = s;
+    out.newly_inverted = std::max(out.newly_inverted, at(s).newly_inverted);
+  }
+  out.displacement = at(out.farthest).largest_displacement;
+  out.determinant = at(out.worst).determinant;
+  return out;
+}
+
 }  // namespace
 
 SequenceStep wheel_step(double time, std::vector<PassageResult> const& passages) {
@@ -153,27 +174,35 @@ std::string wheel_text(MorphedWheel const& wheel, QualityReport const& baseline)
          clearances_text(clearance_table(tips), {tips});
 }
 
-std::string wheel_over_time_text(std::vector<SequenceStep> const& steps, std::vector<PassageResult> const& passages) {
+std::string passages_over_time_text(std::vector<SequenceStep> const& steps,
+                                    std::vector<PassageResult> const& passages) {
   std::size_t const width = width_of_blades(passages);
   std::string text =
       fmt::format("{:>8}  {:<{}}  {:>20}  {:>7}  {:>20}  {:>7}  {:>14}\n", "passage", "blade", width,
                   "largest displacement", "at step", "smallest determinant", "at step", "newly inverted");
   for (std::size_t p = 0; p < passages.size(); ++p) {
-    std::size_t farthest = 0, worst = 0;
-    Index inverted = 0;
-    for (std::size_t s = 0; s < steps.size(); ++s) {
-      MorphedStep const& now = steps[s].passages[p];
-      if (now.largest_displacement > steps[farthest].passages[p].largest_displacement) farthest = s;
-      if (is_worse(now, steps[worst].passages[p])) worst = s;
-      inverted = std::max(inverted, now.newly_inverted);
-    }
+    OverTime const all = over_time(steps, p);
     text += fmt::format("{:>8}  {:<{}}  {:>20.6g}  {:>7}  {:>20.4f}  {:>7}  {:>14}\n", p + 1,
-                        blades_text(passages[p].blades), width, steps[farthest].passages[p].largest_displacement,
-                        farthest + 1, steps[worst].passages[p].determinant, worst + 1, inverted);
+                        blades_text(passages[p].blades), width, all.displacement, all.farthest, all.determinant,
+                        all.worst, all.newly_inverted);
   }
   std::vector<std::vector<TipClearance>> tips;
   for (SequenceStep const& step : steps) tips.push_back(all_tips(step.passages));
   return text + clearances_text(clearance_steps_table(tips), tips);
+}
+
+nlohmann::json passages_over_time_json(std::vector<SequenceStep> const& steps) {
+  nlohmann::json out = nlohmann::json::array();
+  for (std::size_t p = 0; p < steps.front().passages.size(); ++p) {
+    OverTime const all = over_time(steps, p);
+    out.push_back({{"passage", p + 1},
+                   {"largest_displacement", all.displacement},
+                   {"farthest_step", all.farthest},
+                   {"min_determinant", all.determinant},
+                   {"worst_step", all.worst},
+                   {"newly_inverted", all.newly_inverted}});
+  }
+  return out;
 }
 
 nlohmann::json wheel_json(MorphedWheel const& wheel) {
@@ -193,6 +222,7 @@ nlohmann::json wheel_json(MorphedWheel const& wheel) {
     passages.push_back({{"passage", passages.size() + 1},
                         {"blades", passage.blades},
                         {"largest_displacement", passage.largest_displacement},
+                        {"newly_inverted", newly_inverted(passage.quality)},
                         {"quality", passage.quality},
                         {"shortfalls", shortfalls_json(passage.shortfalls)}});
     if (!passage.clearances.empty()) passages.back()["clearances"] = clearance_json(passage.clearances);

@@ -10,9 +10,10 @@ namespace gridmorph::cli {
 
 /// One line per row of zones and per passage, the certificate, seams, clearances.
 std::string wheel_text(MorphedWheel const& wheel, QualityReport const& baseline);
-/// One line per passage: the largest displacement and the worst of all steps; clearances. passages: their blades.
-std::string wheel_over_time_text(std::vector<SequenceStep> const& steps, std::vector<PassageResult> const& passages);
 nlohmann::json wheel_json(MorphedWheel const& wheel);
+/// One line per passage: the largest displacement and the worst of all steps; clearances. passages: their blades.
+std::string passages_over_time_text(std::vector<SequenceStep> const& steps, std::vector<PassageResult> const& passages);
+nlohmann::json passages_over_time_json(std::vector<SequenceStep> const& steps);
 
 /// Passages with what is told of each; the worst one has most cells inverted, then the smallest determinant.
 SequenceStep wheel_step(double time, std::vector<PassageResult> const& passages);
