@@ -1,6 +1,7 @@
 // What a mesh is bounded by, as motion rules see it: the same for blocks and for elements.
 #pragma once
 
+#include <gridmorph/boundary/second_plane.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/geometry/facet_surface.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
@@ -71,6 +72,8 @@ class Boundary {
   [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
+  /// Of blocks of a 2-D mesh.
+  [[nodiscard]] SecondPlane second_plane() const { return SecondPlane(mesh_); }
   /// The vector from the plane of a plane mesh to the second places of its nodes.
   [[nodiscard]] Vec3 const& across() const { return across_; }
 

@@ -1,6 +1,5 @@
 #include <gridmorph/motion/boundary_motion.hpp>
 
-#include <gridmorph/boundary/second_plane.hpp>
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
@@ -58,7 +57,7 @@ struct BoundaryMotion::Impl {
   Impl(std::shared_ptr<Boundary const> of, ResolvedMotion resolved)
       : boundary(std::move(of)),
         motion(std::move(resolved)),
-        second_plane(boundary->mesh()),
+        second_plane(boundary->second_plane()),
         slip(std::make_shared<SlipSurfaces const>(*boundary, motion, notes)) {
     make_targets();
     inflate();

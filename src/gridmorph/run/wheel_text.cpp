@@ -132,13 +132,6 @@ bool is_worse(SequenceStep const& a, SequenceStep const& b) {
   return is_worse(a.passages[a.worst], b.passages[b.worst]);
 }
 
-std::size_t worst_step(std::vector<SequenceStep> const& steps) {
-  std::size_t worst = 0;
-  for (std::size_t s = 1; s < steps.size(); ++s)
-    if (is_worse(steps[s], steps[worst])) worst = s;
-  return worst;
-}
-
 std::size_t worst_passage(std::vector<PassageResult> const& passages) {
   auto const better = [](auto const& a, auto const& b) { return badness_of(a.quality) < badness_of(b.quality); };
   return std::size_t(std::max_element(passages.begin(), passages.end(), better) - passages.begin());

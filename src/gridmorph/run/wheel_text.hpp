@@ -19,8 +19,6 @@ nlohmann::json passages_over_time_json(std::vector<SequenceStep> const& steps);
 SequenceStep wheel_step(double time, std::vector<PassageResult> const& passages);
 /// Which of two steps is the worse one, by their worst passages.
 bool is_worse(SequenceStep const& a, SequenceStep const& b);
-/// Number of the worst step, by its worst passage.
-std::size_t worst_step(std::vector<SequenceStep> const& steps);
 /// Number of the passage whose cells came out worst, by badness_of().
 std::size_t worst_passage(std::vector<PassageResult> const& passages);
 
