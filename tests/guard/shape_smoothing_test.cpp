@@ -30,16 +30,25 @@ Coordinates copy_of(Coordinates const& x) {
   return out;
 }
 
-MorphPlan plan_of(Outcome const& run) { return PlanAccess::of(PreparedMorph(run.prepared)); }
+/// A mesh, its plan as guards take it and what came of it.
+struct Planned {
+  Mesh mesh;
+  MorphPlan plan;
+  Morphed morphed;
+
+  explicit Planned(Outcome&& of)
+      : mesh(of.mesh), plan(PlanAccess::of(std::move(of.prepared))), morphed(std::move(of.morphed)) {}
+  [[nodiscard]] PreparedMorph const& prepared() const { return *PlanAccess::blocks(plan); }
+};
 
 struct Smoothed {
   Coordinates x;
   ShapeSmoothingReport report;
 };
 
-Smoothed smooth(Outcome const& run, Coordinates const& morphed, HostInstance const& host = {}) {
+Smoothed smooth(Planned const& run, Coordinates const& morphed, HostInstance const& host = {}) {
   Smoothed out{copy_of(morphed), {}};
-  out.report = smooth_shapes(host, IndexedMesh(run.mesh), plan_of(run), out.x);
+  out.report = smooth_shapes(host, IndexedMesh(run.mesh), run.plan, out.x);
   return out;
 }
 
@@ -57,7 +66,7 @@ std::pair<Index, Index> inside_out(Mesh const& mesh, Coordinates const& x) {
 
 /// The case's motion, enlarged until corners lose their shape.
 struct Overdone {
-  Outcome run;
+  Planned run;
   Smoothed smoothed;
 };
 
@@ -68,7 +77,7 @@ Overdone const& overdone(Case const& c) {
   if (auto const found = known.find(c.name); found != known.end()) return found->second;
   double factor = 1;
   for (int n = 0; n < 10; ++n, factor *= 1.5) {
-    Outcome run = morph(c.mesh(), c.motion(factor), c.options);
+    Planned run(morph(c.mesh(), c.motion(factor), c.options));
     Smoothed smoothed = smooth(run, run.morphed.position);
     if (smoothed.report.triggered_before > 0)
       return known.try_emplace(c.name, Overdone{std::move(run), std::move(smoothed)}).first->second;
@@ -102,7 +111,7 @@ TEST_P(ShapeSmoothing, WhatIsFrozenFollowsTheMotionWithoutJumps) {
     Coordinates plain(home.size());
     for (Index n = 0; n < home.size(); ++n) plain.set(n, home[n] + share * (run.morphed.position[n] - home[n]));
     Coordinates x = copy_of(plain);
-    (void)smooth_frozen({}, IndexedMesh(run.mesh), plan_of(run), x, frozen);
+    (void)smooth_frozen({}, IndexedMesh(run.mesh), run.plan, x, frozen);
     return std::pair(plain, x);
   };
   EXPECT_EQ(largest_distance(at(0).second, home), 0);
@@ -120,7 +129,7 @@ TEST_P(ShapeSmoothing, KeepsWhatItMust) {
   auto const& [x, report] = smoothed;
   Coordinates const& plain = run.morphed.position;
   Mesh const& mesh = run.mesh;
-  double const size = run.plan().mesh_size;
+  double const size = run.prepared().plan().mesh_size;
   ++tried;
   helped += report.inverted_after < report.inverted_before || report.smallest_after > report.smallest_before ? 1 : 0;
 
@@ -138,8 +147,8 @@ TEST_P(ShapeSmoothing, KeepsWhatItMust) {
   expect_within(report.inverted_before, inside_out(mesh, plain));
   expect_within(report.inverted_after, inside_out(mesh, x));
 
-  for (Index const n : run.plan().boundary_nodes) EXPECT_TRUE(same_bits(x[n], plain[n])) << n;
-  for (CellBox const& box : run.plan().near_field)
+  for (Index const n : run.prepared().plan().boundary_nodes) EXPECT_TRUE(same_bits(x[n], plain[n])) << n;
+  for (CellBox const& box : run.prepared().plan().near_field)
     for (int k = box.cells.begin[2]; k <= box.cells.end[2]; ++k)
       for (int j = box.cells.begin[1]; j <= box.cells.end[1]; ++j)
         for (int i = box.cells.begin[0]; i <= box.cells.end[0]; ++i) {
@@ -148,7 +157,7 @@ TEST_P(ShapeSmoothing, KeepsWhatItMust) {
         }
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
-    SlipSurface const* const surface = run.prepared.surface.slip_surface(int(p));
+    SlipSurface const* const surface = run.prepared().surface.slip_surface(int(p));
     Zone const& zone = mesh.zones[std::size_t(patch.zone)];
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
@@ -163,7 +172,7 @@ TEST_P(ShapeSmoothing, KeepsWhatItMust) {
           }
         }
   }
-  for (Link const& link : run.prepared.links.all)
+  for (Link const& link : run.prepared().links.all)
     for_each_pair(mesh, link, [&](Index own, Index donor) {
       double const gap = distance(link.transform(x[own]), x[donor]);
       double const before = distance(link.transform(mesh.coordinates[own]), mesh.coordinates[donor]);
@@ -181,7 +190,7 @@ TEST_P(ShapeSmoothing, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST_P(ShapeSmoothing, LeavesSoundMeshesAlone) {
   Case const& c = GetParam();
-  Outcome const run = morph(c.mesh(), c.motion(0.01), c.options);
+  Planned const run(morph(c.mesh(), c.motion(0.01), c.options));
   auto const [x, report] = smooth(run, run.morphed.position);
   EXPECT_EQ(report.triggered_before, 0);
   EXPECT_EQ(report.rounds, 0);
@@ -197,7 +206,7 @@ class TangledBox : public testing::TestWithParam<std::tuple<Shape, double>> {};
 TEST_P(TangledBox, GoesBackToTheBaseline) {
   auto const [shape, amplitude] = GetParam();
   Index3 const n{9, 8, 7};
-  Outcome const run = morph(box(n, shape, 5), motion({rule({"*"}, FixedRule{})}));
+  Planned const run(morph(box(n, shape, 5), motion({rule({"*"}, FixedRule{})})));
   Coordinates const& home = run.mesh.coordinates;
   Coordinates tangled = copy_of(home);
   Random random(11);
@@ -272,7 +281,7 @@ class TwoBoxes {
     return out;
   }
 
-  Outcome run = morph(mesh(), motion({rule({"*"}, FixedRule{})}));
+  Planned run{morph(mesh(), motion({rule({"*"}, FixedRule{})}))};
 };
 
 TEST(SmoothingOfParts, IsKeptWhereItHelpsAndTakenBackWhereItDoesNot) {

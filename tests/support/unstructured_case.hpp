@@ -5,7 +5,6 @@
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
-#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 
@@ -74,9 +73,6 @@ struct UnstructuredCase {
     return largest;
   }
 };
-
-/// A plan as guards take it.
-inline MorphPlan plan_of(PreparedUnstructured prepared) { return PlanAccess::of(std::move(prepared)); }
 
 /// Positions of all nodes, planned and morphed on an execution space of the host.
 template <class Exec>

@@ -8,6 +8,7 @@
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/kernels/transposed_slip.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 
 #include <gtest/gtest.h>
@@ -147,11 +148,12 @@ TEST(GivenSlip, PutsNodesBackOnSurfacesOfRevolution) {
 
 TEST(GivenSlip, HoldsInSeveralStepsToo) {
   Case const c(to_hexahedra(unit_box({6, 5, 4})));
-  auto const m = c.morph(floor_across(across()), coarse());
+  auto m = c.morph(floor_across(across()), coarse());
+  MorphPlan const plan = PlanAccess::of(std::move(m.prepared));
   StepOptions options;
   options.plan = coarse();
   options.steps = 2;
-  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(m.prepared), m.boundary, options);
+  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan, m.boundary, options);
   EXPECT_LT(largest_change(c, x, "i_min", component(0)), 1e-14);
   EXPECT_LT(largest_change(c, x, "j_max", component(1)), 1e-14);
   for (Index32 const n : c.nodes_of("k_min")) EXPECT_LT(distance(x[n], m.x[n]), 1e-14) << n;

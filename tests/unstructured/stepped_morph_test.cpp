@@ -10,6 +10,7 @@
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/morph/plan_access.hpp>
 
 #include <gtest/gtest.h>
 
@@ -109,17 +110,17 @@ TEST(SteppedMorph, ABodyTurnsByARightAngle) {
   for (Index const elements : reduced() ? std::vector<Index>{40'000} : std::vector<Index>{40'000, 90'000}) {
     auto c = sphere(elements);
     auto const motion = turn(150);
-    auto const in_one = c.guarded_morph(motion);
+    auto in_one = c.guarded_morph(motion);
+    auto const known = in_one.prepared.plan.known;
+    MorphPlan const plan = PlanAccess::of(std::move(in_one.prepared));
     Coordinates const baseline = c.mesh.coordinates;
     int calls = 0;
     StepOptions options;
     options.progress = [&](int step) { EXPECT_EQ(step, ++calls); };
-    Coordinates const x =
-        morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(in_one.prepared), in_one.boundary, options);
+    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan, in_one.boundary, options);
     EXPECT_EQ(calls, 2);
     EXPECT_EQ(c.mesh.coordinates.x.data(), baseline.x.data());
     EXPECT_EQ(c.inverted(x), 0) << elements;
-    auto const& known = in_one.prepared.plan.known;
     for (std::size_t k = 0; k < known.size(); ++k)
       EXPECT_EQ(norm(x[known[k]] - (baseline[known[k]] + in_one.boundary[k])), 0);
   }
@@ -129,11 +130,11 @@ TEST(SteppedMorph, AShiftOfEverythingIsOne) {
   auto c = sphere(12'000);
   Motion const motion =
       motion_of({rule_for({"sphere"}, translation({1, 2, 3})), rule_for({"outer"}, translation({1, 2, 3}))});
-  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
+  MorphPlan const plan(c.mesh, motion);
   StepOptions options;
   options.steps = 3;
-  auto const u = prepared.boundary_displacement();
-  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options);
+  auto const u = plan.boundary_displacement();
+  Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan, u, options);
   for (Index n = 0; n < c.mesh.n_nodes(); ++n) EXPECT_LT(norm(x[n] - c.mesh.coordinates[n] - Vec3{1, 2, 3}), 1e-12);
 }
 
@@ -149,12 +150,12 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
       motion_of({rule_for({"k_min"}, push), rule_for({"i_min", "i_max", "j_min", "j_max"}, SlipRule{}),
                  rule_for({"k_max"}, translation({0, 0, 0}))});
   EXPECT_NO_THROW({
-    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, {});
-    auto const u = prepared.boundary_displacement();
+    MorphPlan const plan(c.mesh, motion);
+    auto const u = plan.boundary_displacement();
     StepOptions options;
     options.steps = 3;
     Coordinates const before = c.mesh.coordinates;
-    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options);
+    Coordinates const x = morph_in_steps(c.mesh, c.topology, c.face_patches, plan, u, options);
     for (Index n = 0; n < c.mesh.n_nodes(); ++n)
       if (before[n].y == 0 || before[n].y == 8) {
         EXPECT_NEAR(x[n].y, before[n].y, 1e-12);
@@ -164,17 +165,17 @@ TEST(SteppedMorph, SlipPlanesAreKept) {
 
 TEST(SteppedMorph, ABackgroundMeshOfOnesOwnIsRefusedAndTheMeshIsAsItWas) {
   auto c = sphere(12'000);
-  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, turn(10), {});
+  MorphPlan const plan(c.mesh, turn(10));
   Coordinates const before = c.mesh.coordinates;
   StepOptions options;
   options.plan.elements.background = std::make_shared<Background const>();
-  auto const u = prepared.boundary_displacement();
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options), PlanError);
+  auto const u = plan.boundary_displacement();
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan, u, options), PlanError);
   options.plan.elements.background = {};
   options.progress = [](int step) {
     if (step == 2) throw MotionError("stop");
   };
-  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan_of(prepared), u, options), MotionError);
+  EXPECT_THROW(morph_in_steps(c.mesh, c.topology, c.face_patches, plan, u, options), MotionError);
   EXPECT_EQ(c.mesh.coordinates.x.data(), before.x.data());
 }
 
