@@ -155,7 +155,8 @@ TEST(WakeRegion, LeavesRulesThatNamePatchesToo) {
   Motion m =
       motion({rule({"wake", "w*"}, FixedRule{}), rule({"wake"}, FixedRule{}), rule({"type:region"}, FixedRule{})});
   m.regions = {region({})};
-  Motion const left = without_regions(wing(), m);
+  Mesh const mesh = wing();
+  Motion const left = without_regions(NamedBoundary(mesh), m);
   ASSERT_EQ(left.rules.size(), 1U);
   EXPECT_EQ(left.rules[0].patches, std::vector<std::string>{"w*"});
   EXPECT_TRUE(left.regions.empty());

@@ -115,12 +115,12 @@ Mesh make(Bricks const& bricks) {
       bool const outer = upper.end[axis] == bricks.extent[axis];
       Index3 turn{0, 0, 0};
       if (outer) turn[axis] = 1 - bricks.extent[axis];
-      for (int d = 0; d < int(zones.size()) && !(outer && bricks.wrap[axis].kind == Wrap::Kind::none); ++d) {
+      for (int d = 0; d < int(zones.size()) && !(outer && bricks.ends[axis].kind == Ends::Kind::none); ++d) {
         auto const common = common_face(shifted(upper, turn), face_of(zones[d], axis, 0));
         if (!common) continue;
         Index3 const back{-turn[0], -turn[1], -turn[2]};
         b.join(z, relative(shifted(*common, back), zones[z]), d, relative(*common, zones[d]), {},
-               outer && bricks.wrap[axis].kind == Wrap::Kind::periodic ? std::optional(bricks.wrap[axis].periodic)
+               outer && bricks.ends[axis].kind == Ends::Kind::periodic ? std::optional(bricks.ends[axis].periodic)
                                                                        : std::nullopt);
       }
       for (int side = 0; side < 2; ++side) {
@@ -128,7 +128,7 @@ Mesh make(Bricks const& bricks) {
         bool const at_limit = face.begin[axis] == (side == 0 ? 0 : bricks.extent[axis] - 1);
         int const number = 2 * axis + side;
         if (at_limit) {
-          if (bricks.wrap[axis].kind == Wrap::Kind::none)
+          if (bricks.ends[axis].kind == Ends::Kind::none)
             b.patch(bricks.family[number], bricks.kind[number], z, axis, side);
           continue;
         }

@@ -119,7 +119,7 @@ Mesh annulus_sector(Sector const& sector, unsigned seed) {
   };
   double angle = -pitch;
   if (sector.single_precision_angle) angle = float(angle);
-  b.wrap[2] = {Wrap::Kind::periodic, rotation(sector.origin, (1 / norm(sector.axis)) * sector.axis, angle)};
+  b.ends[2] = {Ends::Kind::periodic, rotation(sector.origin, (1 / norm(sector.axis)) * sector.axis, angle)};
   b.family = {"inlet", "outlet", sector.inner_radius > 0 ? "hub" : "pole", "case", "", ""};
   b.kind = {PatchKind::inflow, PatchKind::outflow, sector.inner_radius > 0 ? PatchKind::wall : PatchKind::degenerate,
             PatchKind::wall,   PatchKind::other,   PatchKind::other};
@@ -138,7 +138,7 @@ Mesh bend_sector(Sector const& sector, unsigned seed) {
   };
   double angle = -pitch;
   if (sector.single_precision_angle) angle = float(angle);
-  b.wrap[2] = {Wrap::Kind::periodic, rotation(sector.origin, (1 / norm(sector.axis)) * sector.axis, angle)};
+  b.ends[2] = {Ends::Kind::periodic, rotation(sector.origin, (1 / norm(sector.axis)) * sector.axis, angle)};
   b.family = {"inlet", "outlet", "hub", "case", "", ""};
   b.kind = {PatchKind::inflow, PatchKind::outflow, PatchKind::wall,
             PatchKind::wall,   PatchKind::other,   PatchKind::other};
@@ -155,7 +155,7 @@ Mesh o_grid(double inner_radius, unsigned seed) {
     double const r = inner_radius + (2 - inner_radius) * q.y;
     return Vec3{r * std::cos(two_pi * q.x) + 0.2 * q.z, 0.8 * r * std::sin(two_pi * q.x), q.z};
   };
-  b.wrap[0].kind = Wrap::Kind::closed;
+  b.ends[0].kind = Ends::Kind::closed;
   b.family = {"", "", inner_radius > 0 ? "body" : "pole", "far", "w_min", "w_max"};
   b.kind = {PatchKind::other,    PatchKind::other,    inner_radius > 0 ? PatchKind::wall : PatchKind::degenerate,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};
@@ -246,8 +246,8 @@ Mesh translational(int directions, unsigned seed) {
     double const wave = std::sin(two_pi * (q.y + q.z));
     return 2 * q.x * Vec3{1, 0.1, 0} + q.y * along_v + q.z * along_w + 0.05 * wave * Vec3{1, 1, -1};
   };
-  b.wrap[2] = {Wrap::Kind::periodic, periodic_translation(-along_w)};
-  if (directions == 2) b.wrap[1] = {Wrap::Kind::periodic, periodic_translation(-along_v)};
+  b.ends[2] = {Ends::Kind::periodic, periodic_translation(-along_w)};
+  if (directions == 2) b.ends[1] = {Ends::Kind::periodic, periodic_translation(-along_v)};
   b.family = {"bottom", "top", directions == 2 ? "" : "side", directions == 2 ? "" : "side", "", ""};
   return make(b);
 }

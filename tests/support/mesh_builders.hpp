@@ -53,7 +53,7 @@ class MeshBuilder {
 };
 
 /// How the two opposite faces of the big box along one axis are connected, if they are.
-struct Wrap {
+struct Ends {
   enum class Kind { none, closed, periodic } kind = Kind::none;
   Periodic periodic;  ///< from the upper face (parameter 1) to the lower face (parameter 0)
 };
@@ -63,7 +63,7 @@ struct Bricks {
   Index3 extent{};                ///< nodes of the big box
   std::vector<IndexRange> zones;  ///< boxes of nodes, bounding planes included; all of it when empty
   std::function<Vec3(Vec3 const&)> position;
-  std::array<Wrap, 3> wrap{};
+  std::array<Ends, 3> ends{};
   /// Family and kind of the six outer faces u_min, u_max, v_min, ...; faces inside the big box with no brick beyond
   /// them are walls of family "step".
   std::array<std::string, 6> family{"u_min", "u_max", "v_min", "v_max", "w_min", "w_max"};

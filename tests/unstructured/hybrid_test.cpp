@@ -27,7 +27,7 @@ Mesh periodic_bricks() {
     Vec3 const p = d(q);
     return Vec3{2 * p.x, p.y, p.z};
   };
-  b.wrap[2] = {Wrap::Kind::periodic, periodic_translation(Vec3{0, 0, -1})};
+  b.ends[2] = {Ends::Kind::periodic, periodic_translation(Vec3{0, 0, -1})};
   b.family = {"in", "out", "hub", "case", "", ""};
   b.kind = {PatchKind::inflow, PatchKind::outflow, PatchKind::wall,
             PatchKind::wall,   PatchKind::other,   PatchKind::other};

@@ -32,7 +32,7 @@ Mesh duct(int n, bool periodic, double waviness = 0) {
     double const r = hub_radius(x) + (case_radius(x) - hub_radius(x)) * q.y;
     return Vec3{x, r * std::cos(theta), r * std::sin(theta)};
   };
-  if (periodic) b.wrap[2] = {Wrap::Kind::periodic, rotation({}, {1, 0, 0}, -pitch)};
+  if (periodic) b.ends[2] = {Ends::Kind::periodic, rotation({}, {1, 0, 0}, -pitch)};
   b.family = {"inlet", "outlet", "hub", "case", "low", "high"};
   b.kind = {PatchKind::inflow, PatchKind::outflow,  PatchKind::wall,
             PatchKind::wall,   PatchKind::symmetry, PatchKind::symmetry};

@@ -45,7 +45,7 @@ Mesh pointed() {
     Vec3 const far{20 * c * std::cos(angle), 20 * c * std::sin(angle), 20 * s};
     return between(wall, far, int(std::lround(q.y * away)));
   };
-  b.wrap[0].kind = Wrap::Kind::closed;
+  b.ends[0].kind = Ends::Kind::closed;
   b.family = {"", "", "wing", "far", "root", "pole"};
   b.kind = {PatchKind::other,    PatchKind::other,    PatchKind::wall,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::degenerate};

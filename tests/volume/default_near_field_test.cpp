@@ -124,7 +124,7 @@ Mesh elliptic_wing() {
     return Vec3{std::cos(angle) * std::sqrt(half_chord * half_chord + lambda),
                 std::sin(angle) * std::sqrt(half_thickness * half_thickness + lambda), q.z};
   };
-  b.wrap[0].kind = Wrap::Kind::closed;
+  b.ends[0].kind = Ends::Kind::closed;
   b.family = {"", "", "wing", "far", "root", "tip"};
   b.kind = {PatchKind::other,    PatchKind::other,    PatchKind::wall,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};

@@ -145,7 +145,7 @@ Mesh section_between_planes() {
     return Vec3{((1 - far) + 60 * far) * std::cos(angle), (0.3 * (1 - far) + 60 * far) * std::sin(angle),
                 2 * q.z + 0.1 * std::sin(2 * std::numbers::pi * q.z) * (1 - far)};
   };
-  b.wrap[0].kind = Wrap::Kind::closed;
+  b.ends[0].kind = Ends::Kind::closed;
   b.family = {"", "", "body", "far", "root", "tip"};
   b.kind = {PatchKind::other,    PatchKind::other,    PatchKind::wall,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};

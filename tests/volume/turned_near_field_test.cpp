@@ -102,7 +102,7 @@ Mesh ellipse_in_circle() {
     double const angle = 2 * std::numbers::pi * q.x, far = (std::pow(1.15, 32 * q.y) - 1) / (std::pow(1.15, 32) - 1);
     return Vec3{((1 - far) + 20 * far) * std::cos(angle), (0.2 * (1 - far) + 20 * far) * std::sin(angle), 0.2 * q.z};
   };
-  b.wrap[0].kind = Wrap::Kind::closed;
+  b.ends[0].kind = Ends::Kind::closed;
   b.family = {"", "", "body", "far", "sides", "sides"};
   b.kind = {PatchKind::other,    PatchKind::other,    PatchKind::wall,
             PatchKind::farfield, PatchKind::symmetry, PatchKind::symmetry};
