@@ -2,12 +2,9 @@
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/read_file.hpp>
-#include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/report/block_graph_text.hpp>
 #include <gridmorph/report/json_text.hpp>
-#include <gridmorph/report/quality_json.hpp>
-#include <gridmorph/report/quality_table.hpp>
 #include <gridmorph/report/smoothing_text.hpp>
 #include <gridmorph/run/block_stages.hpp>
 #include <gridmorph/run/element_stages.hpp>
