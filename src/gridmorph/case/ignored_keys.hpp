@@ -20,7 +20,7 @@ struct CaseUse {
 
 /// Why no blocks are to be looked for among the hexahedra of a mesh, as the end of a sentence; empty: they are. [mesh]
 /// blocks decides where it is given, otherwise what only elements have: their keys, regions by the names of their zones
-/// and subsets, and shocks of a flow that is solved on them.
+/// and subsets, shocks of a flow that is solved on them, and wheels.
 std::string why_elements(CaseFile const& case_file);
 
 /// Throws one ConfigError that lists every key of the case file without an effect on such a run, each as
