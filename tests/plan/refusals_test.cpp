@@ -23,6 +23,20 @@ TEST(Refusals, BlocksThatNothingReachesAreNamed) {
   expect_all_in(text, {"'L1'", "'L2'", "'L3'", "no chain"});
 }
 
+// Beside a node so far away all others are at one place, for the tolerance that goes with the size of the mesh.
+TEST(Refusals, NodesFarAwayFromAllOthersAreNamed) {
+  for (double const far : {1e11, -1e16, 1e99}) {
+    Mesh mesh = l_shape(1);
+    mesh.coordinates.y(7) = far;
+    auto const text = message_of<MeshError>([&] { morph(mesh, motion({rule({"*"}, FixedRule{})})); });
+    expect_all_in(text, {describe_node(mesh, 7), "1 node ", "1e+08 times", "repair the mesh"});
+  }
+  Mesh mesh = l_shape(1);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.x(n) += 1e15;
+  auto const text = message_of<MeshError>([&] { morph(mesh, motion({rule({"*"}, FixedRule{})})); });
+  expect_all_in(text, {"1e+15", "0.22", "nearer to the origin"});
+}
+
 TEST(Refusals, OrdersOfChainsThatComeToNoKnownFaceAreNamed) {
   PreparedMorph const prepared = prepare(box({5, 4, 6}, Shape::straight, 1),
                                          motion({rule({"u_min"}, function_rule(constant({0, 0, 0.25}))),

@@ -1,4 +1,4 @@
-// The bounding box of a mesh, and whether its coordinates are numbers.
+// The bounding box of a mesh, whether its coordinates are numbers, and which can belong to one mesh.
 #include "support/mesh_builders.hpp"
 
 #include <gridmorph/mesh/extent.hpp>
@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace gridmorph::test {
@@ -44,6 +45,38 @@ TEST(MeshExtent, OneValueThatIsNoNumberIsFoundWhereverItIs) {
 TEST(MeshExtent, AMeshWithoutNodesHasNoSize) {
   EXPECT_EQ(extent_of(Coordinates()).size(), 0);
   EXPECT_TRUE(extent_of(Coordinates()).finite);
+}
+
+// A far field 1e5 chords away is one; a node that lies beyond what 1e-8 of the mesh's size leaves of the chord is not.
+TEST(MeshCore, TellsFarFieldsFromNodesThatAreNone) {
+  Mesh ring = box({40, 60, 2}, Shape::straight, 0);
+  Zone const zone = ring.zones[0];
+  for (double const unit : {1e-3, 1.0, 25.4})
+    for (double const far : {10.0, 1e3, 1e5}) {
+      // A ring of cells that grow from 1e-6 chords on out to the far field.
+      for (int j = 0; j < zone.extent[1]; ++j)
+        for (int i = 0; i < zone.extent[0]; ++i) {
+          double const angle = 0.16 * i, r = 0.5 + 1e-6 * std::pow(1e6 * far, double(j) / (zone.extent[1] - 1));
+          for (int k = 0; k < zone.extent[2]; ++k)
+            ring.coordinates.set(zone.node({i, j, k}), unit * Vec3{r * std::cos(angle), r * std::sin(angle), 0.1 * k});
+        }
+      MeshCore const core = core_of(ring.coordinates);
+      EXPECT_GT(core.radius, 0.1 * unit);
+      EXPECT_LT(core.radius, 2 * unit);
+      for (Index n = 0; n < ring.n_nodes(); ++n) EXPECT_FALSE(core.is_far(ring.coordinates[n])) << far;
+      EXPECT_FALSE(core.is_rounded_away(2 * far * unit));
+      EXPECT_TRUE(core.is_far({0, 1e9 * unit, 0}));
+      EXPECT_TRUE(core.is_rounded_away(1e16 * unit));
+    }
+}
+
+TEST(MeshCore, OfNodesAtOnePlaceHasNoneFarAway) {
+  Coordinates c(3);
+  for (Index n = 0; n < 3; ++n) c.set(n, {0.5, 0, 0});
+  EXPECT_FALSE(core_of(c).is_far({1, 0, 0}));
+  EXPECT_FALSE(core_of(Coordinates()).is_far({1, 0, 0}));
+  c.set(1, {0.5, 2, 0});
+  EXPECT_EQ(core_of(c).radius, 2);
 }
 
 }  // namespace

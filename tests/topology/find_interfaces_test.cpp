@@ -79,9 +79,10 @@ TEST_P(FindInterfaces, WhatIsFoundConnectsAndCoversTheMesh) {
   }
 }
 
-// Places that are no numbers were searched for without end.
-TEST(FoundInterfaces, CoordinatesThatAreNoNumbersAreRefused) {
-  for (double const bad : {std::nan(""), HUGE_VAL, 1e200}) {
+// Places that are no numbers were searched for without end, and those of a mesh whose size a single node makes were all
+// the same.
+TEST(FoundInterfaces, CoordinatesThatAreNoNumbersOrFarAwayAreRefused) {
+  for (double const bad : {std::nan(""), HUGE_VAL, 1e200, 1e16, -1e11}) {
     Mesh mesh = box({3, 3, 3}, Shape::curved, 1);
     mesh.coordinates.y(5) = bad;
     std::string const said = [&] {
@@ -92,7 +93,8 @@ TEST(FoundInterfaces, CoordinatesThatAreNoNumbersAreRefused) {
       }
       return std::string();
     }();
-    EXPECT_NE(said.find("repair the mesh first"), said.npos) << said;
+    EXPECT_NE(said.find("repair the mesh"), said.npos) << said;
+    EXPECT_NE(said.find(describe_node(mesh, 5)), said.npos) << said;
   }
 }
 

@@ -1,5 +1,6 @@
 // Meshes of kinds that users bring: viscous bodies, half models, bodies near or on other boundaries, several bodies and
 // zones, wing sections, elements of second order, polyhedra.
+#include "support/expect_error.hpp"
 #include "support/made_bodies.hpp"
 #include "support/reduced.hpp"
 #include "support/unstructured_case.hpp"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -97,6 +99,56 @@ TEST(SmallBodies, MoveByFourDiametersInABigBox) {
   Case const c(make_sphere(o));
   auto const m = c.morph(motion_of({rule_for({"sphere"}, translation({4, 0, 0}))}));
   expect_sound(c, m);
+}
+
+// ---- far away
+// ---------------------------------------------------------------------------------------------------------
+
+// The size of the mesh is what tolerances go with: beside such a node all elements of the body were at one place, and
+// looked through for each of its places.
+TEST(FarAway, ANodeThatCannotBelongToTheMeshIsNamedWithEveryWrap) {
+  Mesh const mesh = box_around(
+      {8, 8, 8},
+      [](Vec3 const& x) {
+        return within(x, {3, 3, 3}, {5, 5, 5});
+      },
+      true);
+  Index32 const on_wall = Case(mesh).nodes_of("body")[3];
+  for (bool const tube : {false, true})
+    for (Index32 const node : {on_wall, Index32(0), Index32(1 + 9 + 81)})
+      for (double const far : {1e10, 1e16, -1e50}) {
+        Mesh damaged = mesh;
+        damaged.coordinates = Coordinates(mesh.n_nodes());
+        for (Index n = 0; n < mesh.n_nodes(); ++n) damaged.coordinates.set(n, mesh.coordinates[n]);
+        damaged.coordinates.z(node) = far;
+        PlanOptions options;
+        options.elements.tube = tube;
+        auto const text = message_of<MeshError>([&] {
+          (void)Case(damaged).morph(motion_of({rule_for({"body"}, translation({0.1, 0, 0}))}), options);
+        });
+        expect_all_in(text, {describe_node(damaged, node), "repair the mesh", "half of all nodes"});
+      }
+}
+
+TEST(FarAway, AFarFieldOf1e5DiametersIsNone) {
+  SphereOptions o;
+  o.elements = 5'000;
+  o.outer = SphereOptions::Outer::sphere;
+  o.distance = 4;
+  Mesh mesh = make_sphere(o);
+  double largest = 0;
+  for (Index n = 0; n < mesh.n_nodes(); ++n) largest = std::max(largest, norm(mesh.coordinates[n]));
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    double const r = norm(p), begin = 0.7;
+    if (r > begin) mesh.coordinates.set(n, (std::pow(1e5 / begin, (r - begin) / (largest - begin)) * begin / r) * p);
+  }
+  Case const c(mesh);
+  for (bool const tube : {false, true}) {
+    PlanOptions options;
+    options.elements.tube = tube;
+    expect_sound(c, c.morph(motion_of({rule_for({"sphere"}, translation({0.2, 0.1, 0}))}), options));
+  }
 }
 
 // ---- symmetry planes

@@ -234,6 +234,7 @@ void check_coverage(Mesh const& mesh, Links const& links) {
 
 Links connect_and_check(HostInstance const& host, Mesh& mesh, TopologyOptions const& options) {
   check_coordinates(mesh, "gridmorph::connect_and_check");
+  check_usable(host, mesh, "gridmorph::connect_and_check");
   Problems problems;
   Links links = connect(host, mesh, options, problems);
   try {

@@ -1,6 +1,6 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/io/finite_check.hpp>
-#include <gridmorph/mesh/extent.hpp>
+#include <gridmorph/mesh/check_coordinates.hpp>
 
 namespace gridmorph::io {
 
@@ -22,6 +22,12 @@ void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string 
     if (bad == 0) continue;
     problems.add(unusable_nodes(where, bad, zone.name, describe_node(mesh, first), coordinates[first]));
   }
+}
+
+void check_places(Mesh const& mesh, std::string const& path, Problems& problems) {
+  MeshExtent const extent = extent_of(mesh.coordinates);
+  if (!extent.usable()) check_finite(mesh, mesh.coordinates, path, problems);
+  for (std::string const& what : find_misplaced(mesh, extent)) problems.add(path + ": " + what);
 }
 
 }  // namespace gridmorph::io

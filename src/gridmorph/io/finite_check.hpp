@@ -1,4 +1,4 @@
-// Finds coordinates that are not numbers.
+// Finds coordinates that are not numbers, or none of the mesh they stand in.
 #pragma once
 
 #include <gridmorph/core/error.hpp>
@@ -14,5 +14,8 @@ std::string unusable_nodes(std::string const& where, Index count, std::string co
 
 /// One problem per zone that has NaN or infinite coordinates: the first such node, its value, and how many there are.
 void check_finite(Mesh const& mesh, Coordinates const& coordinates, std::string const& where, Problems& problems);
+
+/// The same for a mesh that was read, whose nodes have to lie where one mesh can have them, too (find_misplaced()).
+void check_places(Mesh const& mesh, std::string const& path, Problems& problems);
 
 }  // namespace gridmorph::io

@@ -59,7 +59,7 @@ Mesh read_blocks(cgns::File const& file, cgns::Node const& tree, ReadOptions con
   read_connections(file, layout, mesh, problems);
   if (options.coordinates) {
     read_coordinates(file, layout, mesh);
-    check_finite(mesh, mesh.coordinates, path, problems);
+    check_places(mesh, path, problems);
   }
   // Non-finite coordinates leave nothing to measure the second plane by.
   if (mesh.dimension == 2 && problems.empty()) add_second_planes(layout, mesh, problems);

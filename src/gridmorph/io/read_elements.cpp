@@ -82,7 +82,7 @@ Mesh read_elements(cgns::File const& file, cgns::Node const& tree, ReadOptions c
   }
   problems.throw_if_any<MeshError>();
 
-  check_finite(mesh, mesh.coordinates, path, problems);
+  check_places(mesh, path, problems);
   problems.throw_if_any<MeshError>();
   read_boundary(file, tree, layout, faces, mesh, problems);
   read_connections(file, layout, faces, mesh, problems);

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/require_kokkos.hpp>
-#include <gridmorph/core/text.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
 #include <string>
+#include <vector>
 
 namespace gridmorph {
 
@@ -27,13 +28,14 @@ inline void check_coordinates(Mesh const& mesh, char const* who) {
            " (z) of them; set coordinates = Coordinates(mesh.n_nodes()) once all zones are there, and fill them");
 }
 
-/// Throws MeshError where a coordinate cannot be computed with: searches by place would go on for ever. Cost: one pass.
-inline void check_usable(Mesh const& mesh, char const* who) {
-  for (Index n = 0; n < mesh.coordinates.size(); ++n)
-    if (!is_usable(mesh.coordinates[n]))
-      throw MeshError(std::string(who) + ": mesh '" + mesh.source + "': " + describe_node(mesh, n) + " is at " +
-                      to_text(mesh.coordinates[n], 9) +
-                      ", which is not finite or larger than 1e100; repair the mesh first");
-}
+/// Throws MeshError where a coordinate cannot be computed with, or lies so far from all others that nothing can be told
+/// apart beside it: searches by place would go on for ever. Cost: one pass.
+void check_usable(HostInstance const& host, Mesh const& mesh, char const* who);
+inline void check_usable(Mesh const& mesh, char const* who) { check_usable(HostInstance(), mesh, who); }
+
+/// What is wrong with coordinates that are usable each by itself, but cannot belong to one mesh: nodes too far away,
+/// one text for each of their zones, or coordinates so large that rounding leaves nothing of the mesh. `extent`: of all
+/// coordinates. Cost: none where nothing is wrong.
+std::vector<std::string> find_misplaced(Mesh const& mesh, MeshExtent const& extent);
 
 }  // namespace gridmorph

@@ -53,6 +53,13 @@ MeshExtent extent_of(Coordinates const& c, Index begin, Index end) {
           std::all_of(zero.begin(), zero.end(), [](double v) { return v == 0; })};
 }
 
+/// The middle one of some values, which are sorted as far as that takes.
+double median(std::vector<double>& values) {
+  auto const middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 bool is_usable(Vec3 const& p) {
@@ -63,6 +70,31 @@ bool is_usable(Vec3 const& p) {
 bool MeshExtent::usable() const { return finite && (low.x > high.x || (is_usable(low) && is_usable(high))); }
 
 double MeshExtent::size() const { return low.x <= high.x ? distance(low, high) : 0.0; }
+
+bool MeshCore::is_rounded_away(double largest) const {
+  return std::numeric_limits<double>::epsilon() * largest > 1e-3 * radius && radius > 0;
+}
+
+MeshCore core_of(Coordinates const& coordinates) {
+  MeshCore out;
+  if (coordinates.size() == 0) return out;
+  constexpr Index wanted = 1000;
+  // An odd step meets nodes on different lines of a block.
+  Index const step = std::max<Index>(1, coordinates.size() / wanted) | 1;
+  std::array<std::vector<double>, 3> values;
+  for (Index n = 0; n < coordinates.size(); n += step) {
+    Vec3 const p = coordinates[n];
+    values[0].push_back(p.x);
+    values[1].push_back(p.y);
+    values[2].push_back(p.z);
+  }
+  out.middle = {median(values[0]), median(values[1]), median(values[2])};
+  std::vector<double> away;
+  for (Index n = 0; n < coordinates.size(); n += step)
+    if (double const d = distance(coordinates[n], out.middle); d > 0) away.push_back(d);
+  if (!away.empty()) out.radius = median(away);
+  return out;
+}
 
 MeshExtent extent_of(HostInstance const& host, Coordinates const& coordinates) {
   constexpr Index chunk = 16384;  // 384 KiB: stays in a core's cache

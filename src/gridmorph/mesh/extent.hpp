@@ -1,4 +1,5 @@
-// One look at all coordinates of a mesh: the box they fill, and whether they are numbers.
+// One look at all coordinates of a mesh: the box they fill, whether they are numbers, and whether all of them can
+// belong to one mesh.
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
@@ -22,6 +23,22 @@ struct MeshExtent {
 
 /// Whether a point can be computed with, as MeshExtent::usable() says it.
 bool is_usable(Vec3 const& p);
+
+/// Where half of all nodes are.
+struct MeshCore {
+  Vec3 middle;        ///< median of each coordinate
+  double radius = 0;  ///< median distance of nodes from there, of those that are not just there; 0: all are
+
+  /// How many radii a node may be away. Far fields lie 1e3 to 1e5 chords away. What is closer than 1e-8 of a mesh's
+  /// size counts as one place, so where a node lies further away than 1e8 radii, half of all nodes are one place.
+  static constexpr double limit = 1e8;
+  [[nodiscard]] bool is_far(Vec3 const& p) const { return radius > 0 && distance(p, middle) > limit * radius; }
+  /// Whether a coordinate of this size is rounded by more than a thousandth of the radius.
+  [[nodiscard]] bool is_rounded_away(double largest) const;
+};
+
+/// By some thousand nodes, all of which have to be usable.
+MeshCore core_of(Coordinates const& coordinates);
 
 /// One pass at memory speed (24 bytes per node); the result does not depend on the number of threads.
 MeshExtent extent_of(HostInstance const& host, Coordinates const& coordinates);

@@ -97,7 +97,7 @@ class Reader {
     add_patches(lists_.boundary);
     add_subsets();
     Problems problems;
-    io::check_finite(mesh_, mesh_.coordinates, path_, problems);
+    io::check_places(mesh_, path_, problems);
     problems.throw_if_any<MeshError>();
     std::string why_not;
     if (auto const planes = find_planes(lists_, why_not))

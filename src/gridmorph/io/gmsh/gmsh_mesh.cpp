@@ -56,7 +56,7 @@ class Builder {
     mesh_.add_zone("zone 1", n_nodes);
     coordinates();
     Problems problems;
-    io::check_finite(mesh_, mesh_.coordinates, path_, problems);
+    io::check_places(mesh_, path_, problems);
     problems.throw_if_any<MeshError>();
     gather_groups();
     elements();

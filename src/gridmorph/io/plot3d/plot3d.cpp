@@ -237,7 +237,7 @@ Mesh read(std::string const& path, ReadOptions const& options) {
   Problems problems;
   if (options.coordinates) {
     read_coordinates(path, file, zones, mesh);
-    io::check_finite(mesh, mesh.coordinates, path, problems);
+    io::check_places(mesh, path, problems);
   }
   if (mesh.dimension == 2 && problems.empty()) add_second_planes(zones, mesh, problems);
   problems.throw_if_any<MeshError>();

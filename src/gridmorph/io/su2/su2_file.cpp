@@ -54,7 +54,7 @@ class Builder {
     for (auto const& z : zones_) zone(z, problems);
     problems.throw_if_any<MeshError>();
     coordinates();
-    io::check_finite(mesh_, mesh_.coordinates, path_, problems);
+    io::check_places(mesh_, path_, problems);
     problems.throw_if_any<MeshError>();
     if (io::orient_prisms(mesh_))
       mesh_.notes.push_back(path_ + ": the prisms are numbered as VTK does, bottom triangles outwards; taken so");

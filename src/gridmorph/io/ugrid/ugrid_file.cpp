@@ -228,7 +228,7 @@ class Reader {
       mesh_.coordinates.set(k, {x, y, z});
     }
     Problems problems;
-    io::check_finite(mesh_, mesh_.coordinates, path_, problems);
+    io::check_places(mesh_, path_, problems);
     problems.throw_if_any<MeshError>();
     surfaces(n);
     for (std::size_t k = 0; k < volumes.size(); ++k) elements(volumes[k], n[3 + k]);

@@ -49,7 +49,7 @@ class Builder {
     for (std::size_t n = 0; n < number_.size(); ++n)
       if (number_[n] >= 0) mesh_.coordinates.set(number_[n], place(n));
     Problems problems;
-    io::check_finite(mesh_, mesh_.coordinates, file_.path(), problems);
+    io::check_places(mesh_, file_.path(), problems);
     problems.throw_if_any<MeshError>();
     cells();
     if (io::orient_prisms(mesh_)) note("the prisms are numbered with bottom triangles outwards, as VTK says; taken so");

@@ -261,7 +261,7 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
                              BoundaryFacePatches const& face_patches, Motion const& motion,
                              PlanOptions const& options) {
   check_coordinates(mesh, "gridmorph::prepare");
-  check_usable(mesh, "gridmorph::prepare");
+  check_usable(host, mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
   Stopwatch watch;
   NodeGraph graph = make_node_graph(host, mesh, topology.elements_of_nodes, row_of_nodes(mesh, motion));
