@@ -2,8 +2,10 @@
 // of its box.
 #include "moved_nodes.hpp"
 #include "plain_splines.hpp"
+#include "support/cascade.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_builders.hpp"
+#include "support/morph_run.hpp"
 #include "support/motions.hpp"
 #include "support/random.hpp"
 #include "support/scramble.hpp"
@@ -11,10 +13,13 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
+#include <gridmorph/motion/ffd/ffd_lattice.hpp>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
 namespace gridmorph::test {
@@ -265,6 +270,69 @@ TEST(Ffd, ShareIsOfAllDisplacementsAndZeroIsZero) {
   auto const whole = moved_nodes(mesh, motion({rule({"plate"}, lattice)})),
              part = moved_nodes(mesh, motion({rule({"plate"}, half)}));
   for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_EQ(0.5 * whole[n].u, part[n].u);
+}
+
+// In an H mesh the two sides of a blade stand a pitch apart, where the lattice has other displacements. The edges are
+// on both sides and tear; where the lattice says the same across the pitch, nothing does.
+
+/// A lattice around all of the blades, its displacements those of `at` for the place of a control point in it.
+FfdRule around_blades(std::array<int, 3> counts, std::function<Vec3(Vec3 const&)> const& at) {
+  FfdRule out = ffd(counts, 2, box_of({-0.5, -0.25, -0.5}, {1.75, 0.75, 1.75}));
+  out.displacement = at_control_points(out, at);
+  return out;
+}
+Motion on_h_blade(FfdRule const& lattice) {
+  return motion({rule({"blade"}, lattice), rule({"inlet", "outlet"}, FixedRule{}), rule({"hub", "case"}, FreeRule{})});
+}
+
+TEST(FfdOnHBlades, TheSameAcrossThePitchMovesBothSidesAlike) {
+  FfdRule const lattice = around_blades({4, 3, 1}, [](Vec3 const& p) {
+    return Vec3{0.02 * p.y, 0, 0.1 * p.x * p.y + 0.03 * p.x};
+  });
+  for (unsigned const seed : {0u, 1u, 2u}) {
+    // Cut, so that each side is in other blocks.
+    Mesh const mesh = seed == 0 ? cascade() : scramble(cascade(), {.seed = seed, .cuts = 3}).mesh;
+    Outcome const moved = morph(mesh, on_h_blade(lattice));
+    double largest = 0;
+    Index copies = 0;
+    FfdLattice const places(lattice, "test");
+    std::map<std::array<long, 2>, std::vector<Vec3>> sides;
+    for (std::size_t p = 0; p < moved.mesh.patches.size(); ++p) {
+      if (moved.mesh.patches[p].families.front() != "blade") continue;
+      for (Index const n : moved.prepared.surface.boundary().surface(int(p)).nodes) {
+        Vec3 const x = moved.mesh.coordinates[n], u = moved.u(n);
+        EXPECT_LE(distance(u, plain_sum(lattice, lattice.displacement, *places.place(x))), 1e-15);
+        largest = std::max(largest, norm(u));
+        auto& there = sides[{std::lround(1e9 * x.x), std::lround(1e9 * x.y)}];
+        for (Vec3 const& other : there) EXPECT_LE(distance(u, other), 1e-15);
+        copies += there.empty() ? 0 : 1;
+        there.push_back(u);
+      }
+    }
+    EXPECT_GT(largest, 0.05);
+    EXPECT_GE(copies, 9 * 15);
+  }
+}
+
+TEST(FfdOnHBlades, WhatTearsTheEdgesIsNamedWithItsCause) {
+  FfdRule const across = around_blades({4, 3, 2}, [](Vec3 const& p) {
+    return Vec3{0, 0, 0.1 * p.x * (1 - p.z) + 0.01};
+  });
+  FfdRule const same = around_blades({4, 3, 1}, [](Vec3 const&) { return Vec3{0, 0, 0.1}; });
+  for (unsigned const seed : {0u, 3u}) {
+    auto const said = [&](Mesh const& mesh, FfdRule const& lattice) {
+      Mesh const cut = seed == 0 ? mesh : scramble(mesh, {.seed = seed, .cuts = 3}).mesh;
+      return message_of<MotionError>([&] { (void)morph(cut, on_h_blade(lattice)); });
+    };
+    expect_all_in(said(cascade(), across), {"(ffd) gives", "nodes of 'blade' and their periodic copies", "apart by",
+                                            "a pitch apart, as in H meshes", "one control point along it"});
+    // About an axis no lattice turns its displacements from pitch to pitch.
+    FfdRule around_axis = same;
+    around_axis.box = box_of({-0.5, -5, -5}, {1.75, 5, 5});
+    expect_all_in(said(cascade(2), around_axis),
+                  {"(ffd) gives", "their periodic copies", "in every pitch of 22.9183 degrees",
+                   "a pitch apart, as in H meshes", "no lattice", "the rule sections"});
+  }
 }
 
 TEST(FfdErrors, SayWhatIsWrongAllInOne) {

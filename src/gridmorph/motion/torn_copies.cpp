@@ -17,9 +17,14 @@ std::string remedy(double turn_rad) {
             " degrees: waves around the axis fit where there are " + waves + " of them in a turn, cos(" + waves +
             " * theta), or a multiple of that";
   }
+  text += "; where the sides of a blade stand a pitch apart, as in H meshes, ";
+  if (turn_rad > 0)
+    return text +
+           "no lattice and no motion in x, y, z moves both alike: give such blades the rule sections, or a formula in "
+           "dr, dtheta and daxial";
   return text +
-         "; where the sides of a blade stand a pitch apart, as in H meshes, no lattice and no motion in x, y, z moves "
-         "both alike: give such blades the rule sections, or a formula in dr, dtheta and daxial";
+         "only what is the same all along the pitch moves both alike: give such blades a lattice with one control "
+         "point along it, a formula without its coordinate, or the rule sections";
 }
 
 }  // namespace
