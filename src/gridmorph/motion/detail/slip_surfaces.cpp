@@ -7,10 +7,12 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/geometry/plane_fit.hpp>
+#include <gridmorph/geometry/profile_smoothing.hpp>
 #include <gridmorph/motion/detail/facet_groups.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace gridmorph {
@@ -384,6 +386,24 @@ class Finder {
     surface.frame = fit.frame;
   }
 
+  /// How far the rounding of coordinates may have taken points, where they are known less exactly than double precision
+  /// has them; otherwise 0.
+  [[nodiscard]] double rounding_of(std::vector<Vec3> const& points) const {
+    CoordinatePrecision const& precision = boundary_.precision();
+    if (precision.relative <= std::numeric_limits<double>::epsilon() && precision.last_decimal == 0) return 0;
+    double largest = 0;
+    for (Vec3 const& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    // Half a unit in the last place in each of two directions.
+    return 0.7 * precision.at(largest);
+  }
+
+  static void smooth_profile(SlipSurface& surface, MeridionalPoints const& points, double rounding) {
+    if (rounding == 0) return;
+    MeridionalPoints in_frame;
+    for (auto const& [a, r] : points) in_frame.emplace_back(surface.frame.abscissa(a, r), surface.frame.ordinate(a, r));
+    smooth(surface.profile, std::move(in_frame), rounding);
+  }
+
   template <class Fit>
   void revolution(Patches const& members, Fit const& fit) {
     auto const points = boundary_.points(members);
@@ -396,6 +416,7 @@ class Finder {
     }
     SlipSurface surface = on_axis();
     set_profile(surface, fit(meridional));
+    smooth_profile(surface, meridional, rounding_of(points));
     surface.baseline_deviation = surface.profile.deviation;
     size = std::max(size, surface.profile.knots.back().axial - surface.profile.knots.front().axial);
     if (surface.baseline_deviation > profile_tolerance * size)
