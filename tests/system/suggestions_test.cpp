@@ -186,6 +186,23 @@ TEST_F(Suggestions, NameTheBodyWhereTypesSayNothing) {
 }
 
 /// RotationAngle holds angles about x, then y, then z: taken for a rotation vector it would be another axis.
+/// Buildings on a street, a car on the road: walls all, and the plane one is no body.
+TEST_F(Suggestions, LeaveTheGroundThatABodyStandsOn) {
+  for (bool const tetrahedra : {false, true}) {
+    Mesh mesh = test::box_around(
+        {8, 8, 6}, [](Vec3 const& p) { return p.x > 3 && p.x < 5 && p.y > 3 && p.y < 5 && p.z < 2; }, tetrahedra);
+    for (Patch& patch : mesh.patches)
+      if (patch.name == "k_min") patch.kind = PatchKind::wall, patch.bc_type = "BCWall";
+    expect_runs("street", mesh, "[0.1, 0.05, 0]");
+    std::string const text = contents(path("cases/street/case.toml"));
+    EXPECT_NE(text.find("patches = [\"body\"]\nrule = \"rigid\""), std::string::npos) << text;
+    EXPECT_NE(text.find("patches = [\"k_min\"]\nrule = \"slip\"\nsurface = \"plane\""), std::string::npos) << text;
+    // Without anything forgiven, since the ground lets the body slide.
+    write("cases/street/strict.toml", std::string(text).replace(text.find("[0, 0, 0]\n"), 9, "[0.1, 0.05, 0]"));
+    EXPECT_LE(gridmorph("morph -q cases/street/strict.toml -o cases/street/strict.cgns").status, 1) << text;
+  }
+}
+
 TEST_F(Suggestions, GiveTheAxisOfAnObliqueSector) {
   Sector sector;
   write_mesh(path("oblique.cgns").string(), test::annulus_sector(sector, 1));

@@ -161,6 +161,20 @@ void add_rest_of_body(MeshSummary const& s, int body, std::vector<Role>& roles) 
   }
 }
 
+/// A plane wall that reaches farther than a wall that is no plane is the ground that this stands on, or the tunnel
+/// around it, and no body.
+void leave_grounds(MeshSummary const& s, std::vector<Role>& roles) {
+  std::vector<Role> const before = roles;
+  for (std::size_t b = 0; b < s.boundaries.size(); ++b) {
+    auto const& plane = s.boundaries[b];
+    if (before[b] != Role::moving || !(plane.flat || looks_like(plane, "plane "))) continue;
+    for (std::size_t other = 0; other < s.boundaries.size(); ++other)
+      if (before[other] == Role::moving && !is_plain(s.boundaries[other]) &&
+          s.boundaries[other].enclosed > plane.enclosed)
+        roles[b] = Role::still;
+  }
+}
+
 /// A wall of revolution that touches walls that move, and nothing beside them, is the tip of a blade, not an end wall.
 void add_tips(MeshSummary const& s, std::vector<Role>& roles) {
   for (std::size_t b = 0; b < s.boundaries.size(); ++b) {
@@ -236,7 +250,10 @@ class Snippet {
     for (auto const& b : s.boundaries) roles_.push_back(role_of(b, s));
     for (std::size_t b = 0; b < s.boundaries.size(); ++b)
       if (is_kind(s.boundaries[b], PatchKind::degenerate)) roles_[b] = Role::paired;
-    if (s.axis) add_tips(s, roles_);
+    if (s.axis)
+      add_tips(s, roles_);
+    else
+      leave_grounds(s, roles_);
     if (std::find(roles_.begin(), roles_.end(), Role::moving) == roles_.end())
       if (int const body = most_like_a_body(s, roles_); body >= 0) {
         guessed_ = true;
