@@ -3,7 +3,9 @@
 
 #include <gridmorph/io/element_orders.hpp>
 #include <gridmorph/io/polyhedron.hpp>
+#include <gridmorph/mesh/found_blocks.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/quality/indexed_mesh.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -158,7 +160,8 @@ PyMesh from_elements(Vectors const& points, int dimension, std::vector<Section> 
   return out;
 }
 
-/// types (of ElementType), offsets, nodes; then elements that are polyhedra, where the faces of each begin, offsets and nodes of these.
+/// types (of ElementType), offsets, nodes; then elements that are polyhedra, where the faces of each begin, offsets and
+/// nodes of these.
 nb::tuple elements(PyMesh const& self) {
   auto const& [type, nodes, number] = self.mesh->elements;
   auto const& p = self.mesh->polyhedra;
@@ -170,7 +173,8 @@ nb::tuple elements(PyMesh const& self) {
                         new_numbers(wide(p.faces.item)));
 }
 
-/// VTK's number of a type of cells with so many nodes (0: none), and which node of the SIDS stands where in VTK's order.
+/// VTK's number of a type of cells with so many nodes (0: none), and which node of the SIDS stands where in VTK's
+/// order.
 nb::tuple vtk_order(int type, int nodes) {
   std::vector<Index32> sids(static_cast<std::size_t>(nodes));
   std::iota(sids.begin(), sids.end(), 0);
@@ -186,12 +190,39 @@ nb::tuple vtk_order(int type, int nodes) {
   return nb::make_tuple(0, new_numbers(std::move(row)));
 }
 
+nb::tuple blocks_of(PyMesh const& self) {
+  if (self.mesh->is_structured()) throw MeshError(self.mesh->source + ": is a mesh of blocks already");
+  FoundBlocks found;
+  {
+    Call const call;
+    IndexedMesh const indexed(*self.mesh);
+    found = find_blocks(HostInstance(), indexed.mesh(), indexed.topology(), indexed.face_patches());
+  }
+  if (found.n_left > 0)
+    throw MeshError(self.mesh->source + ": " + std::to_string(found.n_left) + " of " +
+                    std::to_string(self.mesh->n_elements()) +
+                    " elements lie in no block of grid lines; the first: " + found.why_left);
+  return nb::make_tuple(PyMesh{self.session, std::make_shared<Mesh>(std::move(found.mesh))},
+                        new_numbers(std::vector<std::int64_t>(found.in_blocks.begin(), found.in_blocks.end())),
+                        new_numbers(std::vector<std::int64_t>(found.element.begin(), found.element.end())));
+}
+
 }  // namespace
 
 void bind_elements(nb::class_<PyMesh>& mesh) {
   mesh.def_static("_from_elements", &from_elements, nb::arg("points"), nb::arg("dimension"), nb::arg("sections"),
                   nb::arg("faces").none(), nb::arg("patches"), nb::arg("zone"))
       .def("_elements", &elements)
+      .def(
+          "find_blocks", &blocks_of,
+          nb::sig("def find_blocks(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.int64], "
+                  "numpy.typing.NDArray[numpy.int64]]"),
+          "The blocks of grid lines in a mesh of hexahedra, or of quadrilaterals in the plane, which plans take as any "
+          "other mesh of blocks; (n_nodes) a node of theirs for each node of this mesh, -1 for none; and (blocks' "
+          "n_cells) the element that each cell is.\n\n"
+          "Where plan is one of the blocks, plan.positions()[nodes] are the morphed nodes of this mesh. Raises "
+          "MeshError "
+          "that names an element in no block. Cost: linear.")
       .def_static("_vtk_order", &vtk_order);
 }
 

@@ -117,3 +117,21 @@ def test_arrays_that_make_no_mesh_are_refused(elements, patches, found):
 def test_blocks_have_no_elements():
     box = np.stack(np.meshgrid(*[np.linspace(0, 1, 3)] * 3, indexing="ij"), axis=-1)
     assert gridmorph.Mesh.from_blocks({"box": box}).elements is None
+
+
+def test_blocks_found_in_hexahedra_move_as_blocks_and_lead_back():
+    mesh = cube("HEXA_8")
+    blocks, nodes, cells = mesh.find_blocks()
+    assert blocks.is_structured and blocks.n_cells == mesh.n_cells == len(cells)
+    assert sorted(cells) == list(range(mesh.n_cells))
+    assert (blocks.coordinates[nodes] == mesh.coordinates).all()
+    motion = gridmorph.Motion({"motion": [{"patches": ["x0", "x1", "y0", "y1", "roof"], "rule": "fixed"}]})
+    motion.function(["floor"], bump)
+    moved = gridmorph.Plan(blocks, motion).positions()[nodes]
+    floor = mesh.coordinates[:, 2] == 0
+    assert np.abs(moved - mesh.coordinates - bump(mesh.coordinates))[floor].max() < 1e-15
+    assert mesh.quality(moved)["inverted"] == 0
+    with pytest.raises(gridmorph.MeshError, match="is no hexahedron"):
+        cube("TETRA_4").find_blocks()
+    with pytest.raises(gridmorph.MeshError, match="blocks already"):
+        blocks.find_blocks()

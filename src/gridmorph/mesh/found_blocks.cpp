@@ -192,6 +192,15 @@ Mesh with_layer(Mesh const& flat) {
   return out;
 }
 
+/// What leads from the elements to their blocks: of a node's copies in these the first, in the plane that of the first
+/// plane; nodes that connections declare to be one have the same.
+void invert(Mesh const& mesh, FoundBlocks& found) {
+  std::vector<Index32> of_representative(std::size_t(mesh.n_nodes()), -1);
+  for (std::size_t n = found.node.size(); n-- > 0;) of_representative[std::size_t(found.node[n])] = Index32(n);
+  found.in_blocks = coincident_nodes(mesh);
+  for (Index32& n : found.in_blocks) n = of_representative[std::size_t(n)];
+}
+
 /// The blocks of a mesh of hexahedra, cell by cell. `named`: the mesh that they are told of in.
 class Search {
  public:
@@ -349,7 +358,11 @@ class Search {
 
 FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                         BoundaryFacePatches const& face_patches) {
-  if (mesh.dimension == 3) return Search(host, mesh, topology, mesh).run(face_patches);
+  if (mesh.dimension == 3) {
+    FoundBlocks out = Search(host, mesh, topology, mesh).run(face_patches);
+    invert(mesh, out);
+    return out;
+  }
   for (Index e = 0; e < mesh.n_elements(); ++e)
     if (mesh.elements.type[std::size_t(e)] != ElementType::quadrilateral) {
       FoundBlocks out;
@@ -362,6 +375,7 @@ FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, Unstructured
   FoundBlocks out = Search(host, layer, of_layer, mesh).run(find_face_patches(layer, of_layer));
   for (Index32& n : out.node)
     if (n >= mesh.n_nodes()) n -= Index32(mesh.n_nodes());
+  invert(mesh, out);
   return out;
 }
 

@@ -68,15 +68,12 @@ ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elem
                                       elements_.n_elements(),
                                       elements_.dimension == 2 ? "quadrilaterals" : "hexahedra"));
   element_ = std::move(found.element);
-  std::vector<Index32> of_representative(std::size_t(elements_.n_nodes()), -1);
-  for (std::size_t n = found.node.size(); n-- > 0;) of_representative[std::size_t(found.node[n])] = Index32(n);
+  block_node_ = std::move(found.in_blocks);
   representative_ = coincident_nodes(elements_);
   if (elements_.dimension == 2) {
     Vec3 const up = plane_normal(elements_);
     across_ = std::fabs(up.x) > 0.5 ? 0 : std::fabs(up.y) > 0.5 ? 1 : 2;
   }
-  block_node_ = representative_;
-  for (Index32& n : block_node_) n = of_representative[std::size_t(n)];
 }
 
 Coordinates ElementsAsBlocks::coordinates(Coordinates const& of_blocks) const {
