@@ -132,7 +132,7 @@ TEST(FarAway, ANodeThatCannotBelongToTheMeshIsNamedWithEveryWrap) {
 
 TEST(FarAway, AFarFieldOf1e5DiametersIsNone) {
   SphereOptions o;
-  o.elements = 5'000;
+  o.elements = 20'000;
   o.outer = SphereOptions::Outer::sphere;
   o.distance = 4;
   Mesh mesh = make_sphere(o);

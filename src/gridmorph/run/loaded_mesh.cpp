@@ -235,10 +235,9 @@ void LoadedMesh::take_blocks() {
     as_elements_ = std::move(found);
     return;
   }
-  remarks_on_blocks_.push_back((found->why_none().empty()
-                                    ? mesh().source + ": limits of blocks run through nearly every row of hexahedra"
+  remark((found->why_none().empty() ? mesh().source + ": limits of blocks run through nearly every row of cells"
                                     : found->why_none()) +
-                               "; they are morphed as elements");
+         "; they are morphed as elements");
 }
 
 LoadedMesh::LoadedMesh(Mesh as_read)
@@ -263,7 +262,7 @@ std::vector<std::string> LoadedMesh::notes() const {
   if (is_structured()) return out;
   auto const& faces = indexed_.face_patches().notes;
   out.insert(out.end(), faces.begin(), faces.end());
-  out.insert(out.end(), remarks_on_blocks_.begin(), remarks_on_blocks_.end());
+  out.insert(out.end(), added_notes_.begin(), added_notes_.end());
   auto const contradicted = contradicted_periodics(mesh(), mesh().size());
   out.insert(out.end(), contradicted.begin(), contradicted.end());
   return out;

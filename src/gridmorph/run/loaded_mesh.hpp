@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::cli {
@@ -97,6 +98,8 @@ class LoadedMesh {
   [[nodiscard]] std::vector<std::string> remarks() const;
   /// The notes of the reader and of the boundary faces.
   [[nodiscard]] std::vector<std::string> notes() const;
+  /// Adds one to the notes of elements.
+  void remark(std::string note) { added_notes_.push_back(std::move(note)); }
 
   [[nodiscard]] QualityReport measure(QualityWanted const& wanted) const { return measure(wanted, mesh()); }
   /// The same with the patches of `patched`, this mesh with more of them.
@@ -151,7 +154,7 @@ class LoadedMesh {
   std::shared_ptr<ElementsAsBlocks const> as_elements_;  ///< where the mesh is blocks found among elements
   IndexedMesh indexed_;
   std::vector<std::string> problems_;
-  std::vector<std::string> remarks_on_blocks_;  ///< why none are taken
+  std::vector<std::string> added_notes_;  ///< beside those of the reader
   /// Whether its solvers work by faces, so that the quality of faces is worth its time: polyhedra, or a file of
   /// OpenFOAM.
   bool by_faces_;

@@ -83,16 +83,14 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Console& console)
                                     .run = case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph,
                                     .format = file.format,
                                     .found_blocks = mesh_->is_structured()});
+  else if (!case_file.find_blocks && may_have_blocks(mesh_->mesh()))
+    mesh_->remark(fmt::format(
+        "no blocks were looked for among the hexahedra, since {}; blocks = \"find\" in [mesh] looks for them",
+        why_elements(case_file)));
   times.push_back({"read", watch.lap(), true});
   console.progress(mesh_->kind().planning);
   check_fields(case_file, mesh_->mesh());
   plan_ = std::make_unique<CasePlan>(*mesh_, case_file);
-  notes = plan_->notes();
-  if (file.kind == MeshKind::unstructured && !file.find_blocks && !case_file.find_blocks &&
-      may_have_blocks(mesh_->mesh()))
-    notes.push_back(fmt::format(
-        "no blocks were looked for among the hexahedra, since {}; blocks = \"find\" in [mesh] looks for them",
-        why_elements(case_file)));
   for (auto& time : plan_->times()) times.push_back(std::move(time));
   wanted_.limits = case_file.guard;
   wanted_.fast = wants_verdict(case_file, mesh_->n_cells());

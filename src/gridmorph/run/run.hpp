@@ -117,7 +117,6 @@ class Run {
   [[nodiscard]] std::string refusal_of(std::filesystem::path const& output, std::string const& what,
                                        std::string const& advice) const;
 
-  std::vector<std::string> notes;
   StepTimes times;
 
  private:
