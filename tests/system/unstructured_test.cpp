@@ -189,7 +189,8 @@ class UnstructuredTurn : public UnstructuredSequence {
   [[nodiscard]] Outcome turn(double degrees, int steps) const {
     std::filesystem::remove(path("turned.su2"));
     write("case.toml",
-          fmt::format("[mesh]\ninput = \"ring.su2\"\noutput = \"turned.su2\"\n[[motion]]\npatches = [\"body\"]\n"
+          fmt::format("[mesh]\nblocks = \"off\"\ninput = \"ring.su2\"\noutput = \"turned.su2\"\n[[motion]]\npatches = "
+                      "[\"body\"]\n"
                       "rule = \"rigid\"\nrotation = {{ axis = [0, 0, 1], origin = [0, 0, 0], angle_deg = {} }}\n"
                       "[boundary_layer]\nwalls = [\"body\"]\nmode = \"blend\"\n"
                       "[guard]\nmin_determinant = 0.001\nsteps = {}\n",
