@@ -192,15 +192,6 @@ Mesh with_layer(Mesh const& flat) {
   return out;
 }
 
-/// What leads from the elements to their blocks: of a node's copies in these the first, in the plane that of the first
-/// plane; nodes that connections declare to be one have the same.
-void invert(Mesh const& mesh, FoundBlocks& found) {
-  std::vector<Index32> of_representative(std::size_t(mesh.n_nodes()), -1);
-  for (std::size_t n = found.node.size(); n-- > 0;) of_representative[std::size_t(found.node[n])] = Index32(n);
-  found.in_blocks = coincident_nodes(mesh);
-  for (Index32& n : found.in_blocks) n = of_representative[std::size_t(n)];
-}
-
 /// The blocks of a mesh of hexahedra, cell by cell. `named`: the mesh that they are told of in.
 class Search {
  public:
@@ -342,6 +333,11 @@ class Search {
     mesh.notes = named_.notes;
     mesh.coordinates = Coordinates(mesh.n_nodes());
     for (std::size_t n = 0; n < out.node.size(); ++n) mesh.coordinates.set(Index(n), mesh_.coordinates[out.node[n]]);
+    // Of a node's copies in the blocks the first leads back, in the plane that of the first plane.
+    std::vector<Index32> of_representative(std::size_t(mesh_.n_nodes()), -1);
+    for (std::size_t n = out.node.size(); n-- > 0;) of_representative[std::size_t(out.node[n])] = Index32(n);
+    for (Index32 n = 0; n < named_.n_nodes(); ++n)
+      out.in_blocks.push_back(of_representative[std::size_t(links_.representative(n))]);
     bool const single =
         std::all_of(named_.zones.begin(), named_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
     for (Zone& zone : mesh.zones) zone.single_precision = single;
@@ -358,11 +354,7 @@ class Search {
 
 FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
                         BoundaryFacePatches const& face_patches) {
-  if (mesh.dimension == 3) {
-    FoundBlocks out = Search(host, mesh, topology, mesh).run(face_patches);
-    invert(mesh, out);
-    return out;
-  }
+  if (mesh.dimension == 3) return Search(host, mesh, topology, mesh).run(face_patches);
   for (Index e = 0; e < mesh.n_elements(); ++e)
     if (mesh.elements.type[std::size_t(e)] != ElementType::quadrilateral) {
       FoundBlocks out;
@@ -375,7 +367,6 @@ FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, Unstructured
   FoundBlocks out = Search(host, layer, of_layer, mesh).run(find_face_patches(layer, of_layer));
   for (Index32& n : out.node)
     if (n >= mesh.n_nodes()) n -= Index32(mesh.n_nodes());
-  invert(mesh, out);
   return out;
 }
 

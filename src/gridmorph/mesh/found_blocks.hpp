@@ -15,7 +15,7 @@ struct FoundBlocks {
   /// (mesh.n_nodes()) the node of the elements at each node of the blocks; in the plane also of the second plane, which
   /// the blocks have as readers give it to them.
   std::vector<Index32> node;
-  std::vector<Index32> in_blocks;  ///< (nodes of the elements) a node of the blocks at its place; -1: there is none
+  std::vector<Index32> in_blocks;  ///< (nodes of the elements) a node of the blocks at its place; -1: none
   std::vector<Index32> element;    ///< (mesh.n_cells()) the element that each cell is, block after block, i fastest
   Index n_left = 0;                ///< elements that lie in no block; these are then not in `mesh`
   std::string why_left;  ///< of the first of them: what it is, or what about it is no block; empty where none is

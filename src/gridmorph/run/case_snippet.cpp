@@ -61,9 +61,11 @@ bool is_named(BoundarySummary const& b, std::initializer_list<std::string_view> 
   return has(b.selector) || std::any_of(b.names.begin(), b.names.end(), has);
 }
 
+bool is_plane(BoundarySummary const& b) { return b.flat || looks_like(b, "plane "); }
+
 /// Planes, arcs and surfaces of revolution lie across the flow or around it.
 bool is_plain(BoundarySummary const& b) {
-  return b.flat || looks_like(b, "plane ") || looks_like(b, "arc about") || looks_like(b, "surface of revolution");
+  return is_plane(b) || looks_like(b, "arc about") || looks_like(b, "surface of revolution");
 }
 
 /// Whether a boundary keeps off the limits of the mesh all round and is no plane: something in the flow.
@@ -129,7 +131,7 @@ int most_like_a_body(MeshSummary const& s, std::vector<Role> const& roles) {
     auto const& boundary = s.boundaries[b];
     if (roles[b] == Role::paired || is_kind(boundary, PatchKind::degenerate) ||
         is_kind(boundary, PatchKind::connection) || looks_like(boundary, "collapsed") ||
-        looks_like(boundary, "side of a 2-D mesh") || boundary.flat || looks_like(boundary, "plane ") ||
+        looks_like(boundary, "side of a 2-D mesh") || is_plane(boundary) ||
         (s.boundaries.size() == 1 && looks_like(boundary, "reaches round")))
       continue;
     std::array<double, 4> const rank{is_wall(boundary)         ? 2.0
@@ -167,7 +169,7 @@ void leave_grounds(MeshSummary const& s, std::vector<Role>& roles) {
   std::vector<Role> const before = roles;
   for (std::size_t b = 0; b < s.boundaries.size(); ++b) {
     auto const& plane = s.boundaries[b];
-    if (before[b] != Role::moving || !(plane.flat || looks_like(plane, "plane "))) continue;
+    if (before[b] != Role::moving || !is_plane(plane)) continue;
     for (std::size_t other = 0; other < s.boundaries.size(); ++other)
       if (before[other] == Role::moving && !is_plain(s.boundaries[other]) &&
           s.boundaries[other].enclosed > plane.enclosed)

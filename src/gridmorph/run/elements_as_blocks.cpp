@@ -69,7 +69,7 @@ ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elem
                                       elements_.dimension == 2 ? "quadrilaterals" : "hexahedra"));
   element_ = std::move(found.element);
   block_node_ = std::move(found.in_blocks);
-  representative_ = coincident_nodes(elements_);
+  node_ = std::move(found.node);
   if (elements_.dimension == 2) {
     Vec3 const up = plane_normal(elements_);
     across_ = std::fabs(up.x) > 0.5 ? 0 : std::fabs(up.y) > 0.5 ? 1 : 2;
@@ -80,7 +80,7 @@ Coordinates ElementsAsBlocks::coordinates(Coordinates const& of_blocks) const {
   Coordinates const& x = elements_.coordinates;
   Coordinates out(x.size());
   for (Index n = 0; n < x.size(); ++n) {
-    Index32 const b = block_node_[std::size_t(n)], r = representative_[std::size_t(n)];
+    Index32 const b = block_node_[std::size_t(n)], r = b < 0 ? Index32(n) : node_[std::size_t(b)];
     // Nodes that are one may be apart by a rounding: they move alike.
     Vec3 moved = b < 0 ? x[n] : r == n ? of_blocks[b] : x[n] + (of_blocks[b] - x[r]);
     if (across_ == 0) moved.x = x[n].x;

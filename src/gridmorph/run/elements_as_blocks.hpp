@@ -37,10 +37,10 @@ class ElementsAsBlocks {
   Mesh elements_, blocks_;
   std::string why_none_;
   bool long_lines_ = false;
-  int across_ = -1;                      ///< the component of coordinates that meshes in the plane keep
-  std::vector<Index32> representative_;  ///< coincident_nodes() of the elements
-  std::vector<Index32> block_node_;      ///< (elements' nodes) a node of the blocks that lies there; -1: none
-  std::vector<Index32> element_;         ///< (cells of the blocks)
+  int across_ = -1;                  ///< the component of coordinates that meshes in the plane keep
+  std::vector<Index32> node_;        ///< (blocks' nodes) the node of the elements, of those that are one the first
+  std::vector<Index32> block_node_;  ///< (elements' nodes) a node of the blocks that lies there; -1: none
+  std::vector<Index32> element_;     ///< (cells of the blocks)
 };
 
 }  // namespace gridmorph::cli

@@ -176,8 +176,9 @@ class Sides {
     return of.zone_in_file.empty() ? mesh_.zones[std::size_t(of.zone)].name : of.zone_in_file;
   }
 
-  static bool same_nodes(std::vector<Index32> a, std::vector<Index32> b) {
-    if (a.size() != b.size()) return false;
+  static bool same_nodes(std::vector<Index32> const& of_a, std::vector<Index32> const& of_b) {
+    if (of_a.size() != of_b.size()) return false;
+    auto a = of_a, b = of_b;
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
     return a == b;

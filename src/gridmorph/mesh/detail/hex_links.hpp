@@ -54,9 +54,11 @@ class HexLinks {
   [[nodiscard]] bool is_hexahedron(Index32 cell) const {
     return mesh_.elements.type[std::size_t(cell)] == ElementType::hexahedron;
   }
-  /// The node that stands for corner c and those that are one with it.
+  /// The node that stands for those that connections, periodic ones left out, declare to be one.
+  [[nodiscard]] Index32 representative(Index32 node) const { return representative_[std::size_t(node)]; }
+  /// That of corner c.
   [[nodiscard]] Index32 node(Index32 cell, int corner) const {
-    return representative_[std::size_t(mesh_.elements.nodes[cell][std::size_t(corner)])];
+    return representative(mesh_.elements.nodes[cell][std::size_t(corner)]);
   }
   /// What lies behind a side inside the mesh; -1: nothing.
   [[nodiscard]] CellSide behind(CellSide s) const { return partner_[std::size_t(s)]; }
