@@ -2,8 +2,8 @@
 //
 // Two zones, one above the other, share an interface; the floor of the lower one is a panel that bends, the other faces
 // stay. The solver keeps each zone in an array of its own, (i, j, k, 3) with a ghost layer around it. The plan is made
-// once. Every step enqueues kernels on the solver's own execution space, which read and write these arrays: no
-// allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
+// once. Every step enqueues kernels on the solver's own execution space, a GPU's where Kokkos has one, which read and
+// write these arrays: no allocation, no fence, no host decision. Needs the core library (and so Kokkos) alone.
 #include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -20,7 +20,7 @@ namespace {
 using gridmorph::Index;
 using gridmorph::Index3;
 using gridmorph::Vec3;
-using Exec = Kokkos::DefaultHostExecutionSpace;
+using Exec = Kokkos::DefaultExecutionSpace;
 using Memory = Exec::memory_space;
 
 constexpr Index3 extent{33, 17, 25};
@@ -62,7 +62,7 @@ double panel_shape(Vec3 const& p) {
   return a * a;
 }
 
-/// One array per zone, with a layer of ghost nodes around it.
+/// One array per zone, with a layer of ghost nodes around it, in the memory of Exec.
 struct Blocks {
   std::vector<Kokkos::View<double****, Kokkos::LayoutRight, Memory>> whole;
   std::vector<Kokkos::View<double****, Kokkos::LayoutStride, Memory>> inner;
@@ -73,16 +73,34 @@ struct Blocks {
       whole.emplace_back("coordinates", ni + 2, nj + 2, nk + 2, 3);
       inner.emplace_back(
           Kokkos::subview(whole.back(), std::pair(1, ni + 1), std::pair(1, nj + 1), std::pair(1, nk + 1), Kokkos::ALL));
+      auto const host = Kokkos::create_mirror_view(whole.back());
       for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
         auto const [i, j, k] = zone.index(n);
         Vec3 const p = mesh.coordinates[n];
-        inner.back()(i, j, k, 0) = p.x;
-        inner.back()(i, j, k, 1) = p.y;
-        inner.back()(i, j, k, 2) = p.z;
+        host(i + 1, j + 1, k + 1, 0) = p.x;
+        host(i + 1, j + 1, k + 1, 1) = p.y;
+        host(i + 1, j + 1, k + 1, 2) = p.z;
       }
+      Kokkos::deep_copy(whole.back(), host);
     }
   }
+  /// z of a node, for what is printed.
+  [[nodiscard]] double z(std::size_t zone, int i, int j, int k) const {
+    auto const host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), whole[zone]);
+    return host(i + 1, j + 1, k + 1, 2);
+  }
 };
+
+/// Writes amplitude times `mode` into the displacement of the boundary.
+void deflect(Exec const& exec, double amplitude, Kokkos::View<Vec3 const*, Memory> const& mode,
+             Kokkos::View<double* [3], Memory> const& boundary) {
+  Kokkos::parallel_for(
+      "deflect", Kokkos::RangePolicy<Exec>(exec, 0, Index(mode.extent(0))), KOKKOS_LAMBDA(Index n) {
+        boundary(n, 0) = amplitude * mode(n).x;
+        boundary(n, 1) = amplitude * mode(n).y;
+        boundary(n, 2) = amplitude * mode(n).z;
+      });
+}
 
 }  // namespace
 
@@ -116,25 +134,24 @@ int main(int argc, char** argv) {
   gridmorph::ValidityCheck<Exec> const validity(exec, mesh);
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
-  std::vector<Vec3> const& mode = plan.boundary_displacement();
-  Kokkos::View<double* [3], Memory> const boundary("boundary displacement", mode.size());
+  std::vector<Vec3> const& shape = plan.boundary_displacement();
+  auto const mode = Kokkos::create_mirror_view_and_copy(
+      Memory(), Kokkos::View<Vec3 const*, Kokkos::HostSpace>(shape.data(), shape.size()));
+  Kokkos::View<double* [3], Memory> const boundary("boundary displacement", shape.size());
   double worst = 0;
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 0.2 * std::sin(2 * std::numbers::pi * step / 8);
-    for (std::size_t n = 0; n < mode.size(); ++n) {
-      boundary(n, 0) = amplitude * mode[n].x;
-      boundary(n, 1) = amplitude * mode[n].y;
-      boundary(n, 2) = amplitude * mode[n].z;
-    }
+    deflect(exec, amplitude, mode, boundary);
     morpher.positions(exec, boundary, now);
     auto const cells = validity(exec, now);
     exec.fence();  // the solver would go on with its own kernels instead
 
     int const i = extent[0] / 2, j = extent[1] / 2;
-    double const panel = current.inner[0](i, j, 0, 2);
-    worst = std::max({worst, std::abs(panel - amplitude), double(cells().inverted)});
+    double const panel = current.z(0, i, j, 0);
+    auto const found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells)();
+    worst = std::max({worst, std::abs(panel - amplitude), double(found.inverted)});
     std::printf("step %d: panel centre at %+.4f, centre of the contact at %+.4f, smallest determinant %.3f\n", step,
-                panel, current.inner[1](i, j, 0, 2), cells().smallest_determinant);
+                panel, current.z(1, i, j, 0), found.smallest_determinant);
   }
   return worst < 1e-15 ? 0 : 1;
 }

@@ -1,8 +1,8 @@
 // A solver with an unstructured mesh: a body heaves in a box, the mesh follows time step by time step.
 //
 // Elements, boundary faces and coordinates are handed over as lists, the plan is made once, and every step enqueues
-// kernels on the solver's own execution space: no allocation, no fence, no host decision. Needs the core library (and
-// so Kokkos) alone.
+// kernels on the solver's own execution space, a GPU's where Kokkos has one: no allocation, no fence, no host decision.
+// Needs the core library (and so Kokkos) alone.
 #include <gridmorph/gridmorph.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -20,6 +20,8 @@ using gridmorph::Index;
 using gridmorph::Index3;
 using gridmorph::Index32;
 using gridmorph::Vec3;
+using Exec = Kokkos::DefaultExecutionSpace;
+using Memory = Exec::memory_space;
 
 constexpr int n = 18;  // unit cells along each side of the box; the body takes the middle third
 constexpr ElementType hexahedron = ElementType::hexahedron;
@@ -84,11 +86,24 @@ gridmorph::Mesh box_around_a_body() {
   return mesh;
 }
 
+/// A list of the host in the memory of Exec.
+Kokkos::View<Vec3 const*, Memory> uploaded(std::vector<Vec3> const& values) {
+  return Kokkos::create_mirror_view_and_copy(
+      Memory(), Kokkos::View<Vec3 const*, Kokkos::HostSpace>(values.data(), values.size()));
+}
+
+/// Writes amplitude times `mode` into the displacement of the boundary.
+void displace(Exec const& exec, double amplitude, Kokkos::View<Vec3 const*, Memory> const& mode,
+              Kokkos::View<Vec3*, Memory> const& boundary) {
+  Kokkos::parallel_for(
+      "displace", Kokkos::RangePolicy<Exec>(exec, 0, Index(mode.extent(0))),
+      KOKKOS_LAMBDA(Index k) { boundary(k) = amplitude * mode(k); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
-  using Exec = Kokkos::DefaultHostExecutionSpace;
   Exec const exec;  // the solver's own instance
 
   // Once: the plan, from which patches move and how far they will.
@@ -98,26 +113,32 @@ int main(int argc, char** argv) {
   gridmorph::PlanOptions options;
   options.elements.motion = 2;  // the largest displacement there will be: the wrap leaves room for it
   gridmorph::MorphPlan const plan(mesh, motion, options);
-  gridmorph::Morpher<Exec> const morpher(exec, plan, mesh.coordinates);
+
+  // The solver's coordinates where its kernels read them.
+  std::vector<Vec3> points;
+  for (Index p = 0; p < mesh.n_nodes(); ++p) points.push_back(mesh.coordinates[p]);
+  auto const x = uploaded(points);
+  Kokkos::View<Vec3*, Memory> const now("positions", points.size());
+  gridmorph::Morpher<Exec> const morpher(exec, plan, x);
 
   // Every step: displacement of the boundary nodes in, positions of all nodes out, always from the reference mesh.
   auto const nodes = plan.boundary_nodes();
-  Kokkos::View<Vec3*, Exec::memory_space> const boundary("boundary displacement", nodes.size());
-  gridmorph::Coordinates const& x = mesh.coordinates;
-  gridmorph::Coordinates const now(mesh.n_nodes());
   std::vector<Vec3> const heave = plan.boundary_displacement();  // unit heave of the body, none of the box
+  auto const mode = uploaded(heave);
+  Kokkos::View<Vec3*, Memory> const boundary("boundary displacement", nodes.size());
   double worst = 0;
   for (int step = 0; step <= 8; ++step) {
     double const amplitude = 2 * std::sin(2 * std::numbers::pi * step / 8);
-    for (std::size_t k = 0; k < nodes.size(); ++k) boundary(k) = amplitude * heave[k];
+    displace(exec, amplitude, mode, boundary);
     morpher.positions(exec, boundary, now);
     exec.fence();  // the solver would go on with its own kernels instead
 
+    auto const moved = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), now);
     double largest = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      Vec3 const wanted = x[nodes[k]] + amplitude * heave[k];
-      worst = std::max(worst, gridmorph::distance(now[nodes[k]], wanted));
-      largest = std::max(largest, gridmorph::norm(amplitude * heave[k]));
+      Vec3 const u = amplitude * heave[k], wanted = points[std::size_t(nodes[k])] + u;
+      worst = std::max(worst, gridmorph::distance(moved(nodes[k]), wanted));
+      largest = std::max(largest, gridmorph::norm(u));
     }
     std::printf("step %d: body moved by %.4f\n", step, largest);
   }

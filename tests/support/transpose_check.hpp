@@ -1,6 +1,7 @@
 // A morph's transpose against its derivative forwards.
 #pragma once
 
+#include "support/every_space.hpp"
 #include "support/morph_run.hpp"
 #include "support/random.hpp"
 
@@ -27,34 +28,60 @@ inline Coordinates coordinates_of(std::vector<Vec3> const& values) {
   return c;
 }
 
-/// A Morpher on a host space at one displacement of the boundary, with velocity and transpose.
+/// A Morpher at one displacement of the boundary, with velocity and transpose.
 template <class Exec>
 struct LinearisedMorph {
+  using Field = DeviceField<typename Exec::memory_space>;  // on the host the arrays themselves
+  Field baseline;
   Morpher<Exec> morpher;
   Coordinates boundary;
   Index n_nodes;
 
   template <class AnyPlan>
-  LinearisedMorph(AnyPlan const& plan, Coordinates const& baseline, std::vector<Vec3> const& at,
+  LinearisedMorph(AnyPlan const& plan, Coordinates const& x, std::vector<Vec3> const& at,
                   std::shared_ptr<SmoothingMap const> const& smoothing = nullptr)
-      : morpher(
+      : baseline(x),
+        morpher(
             MorpherAccess::of(Exec(), plan, baseline, {.velocity = true, .smoothing = smoothing, .transpose = true})),
         boundary(coordinates_of(at)),
-        n_nodes(baseline.size()) {}
+        n_nodes(x.size()) {}
 
+  [[nodiscard]] Coordinates displacements() const {
+    Field const at(boundary), u{Coordinates(n_nodes)};
+    morpher.displacements(Exec(), at, u);
+    return finished(u);
+  }
   [[nodiscard]] Coordinates forwards(Coordinates const& rate) const {
-    Coordinates v(n_nodes);
-    morpher.velocities(Exec(), boundary, rate, v);
-    Exec().fence();
-    return v;
+    Field const at(boundary), dt(rate), v{Coordinates(n_nodes)};
+    morpher.velocities(Exec(), at, dt, v);
+    return finished(v);
   }
   [[nodiscard]] Coordinates backwards(Coordinates const& gradient) const {
-    Coordinates g(boundary.size());
-    morpher.transpose(Exec(), boundary, gradient, g);
+    Field const at(boundary), dJ_du(gradient), dJ_db{Coordinates(boundary.size())};
+    morpher.transpose(Exec(), at, dJ_du, dJ_db);
+    return finished(dJ_db);
+  }
+
+ private:
+  static Coordinates finished(Field const& field) {
     Exec().fence();
-    return g;
+    return field.host_copy();
   }
 };
+
+/// Of the morph that linearised(exec) makes: displacements, derivative and transpose on all execution spaces against
+/// those on the host's default.
+template <class Linearised>
+void expect_same_derivatives(Linearised const& linearised, Coordinates const& rate, Coordinates const& gradient) {
+  auto const reference = linearised(Kokkos::DefaultHostExecutionSpace());
+  Coordinates const u = reference.displacements(), v = reference.forwards(rate), g = reference.backwards(gradient);
+  on_every_space([&](auto const& exec, char const*) {
+    auto const at = linearised(exec);
+    expect_same_on(exec, at.displacements(), u, 1e-13 * std::max(1.0, largest_component(u)));
+    expect_same_on(exec, at.forwards(rate), v, 1e-12 * largest_component(v));
+    expect_same_on(exec, at.backwards(gradient), g, 1e-12 * largest_component(g));
+  });
+}
 
 /// Bits by which gradients differ where another displacement has gone through the Morpher since it was made; 0: a
 /// transpose runs all that it is linearised at itself.

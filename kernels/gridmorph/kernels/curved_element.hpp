@@ -242,7 +242,7 @@ KOKKOS_INLINE_FUNCTION Degrees degrees(ElementType type) {
 struct BezierOfValues {
   double of[max_degree + 1][max_degree + 1];
 };
-constexpr BezierOfValues bezier_of_values(int degree) {
+KOKKOS_INLINE_FUNCTION constexpr BezierOfValues bezier_of_values(int degree) {
   constexpr double binomial[max_degree + 1][max_degree + 1] = {{1, 0, 0, 0, 0, 0}, {1, 1, 0, 0, 0, 0},
                                                                {1, 2, 1, 0, 0, 0}, {1, 3, 3, 1, 0, 0},
                                                                {1, 4, 6, 4, 1, 0}, {1, 5, 10, 10, 5, 1}};

@@ -25,9 +25,10 @@ struct LineTable {
 
 /// Calls visit(position on the line, t) for every node of line (a, b) of a tube, in order; nodes where segments meet
 /// are visited once per segment. x: Field<double const>, or what else has places with a distance() between neighbours.
+/// For the host, which makes tables of plans.
 template <class MemorySpace, class Places, class Visit>
-KOKKOS_INLINE_FUNCTION void walk_line(LineTable<MemorySpace> const& lines, Tube const& tube, int a, int b,
-                                      Places const& x, Visit const& visit) {
+void walk_line(LineTable<MemorySpace> const& lines, Tube const& tube, int a, int b, Places const& x,
+               Visit const& visit) {
   int const n_s = lines.chains(tube.chain).n_s;
   auto walk = [&](auto const& each) {
     double done = 0;

@@ -6,6 +6,13 @@
 
 namespace gridmorph::kernels {
 
+/// Surfaces or offsets in a list, as the functions here ask for them: for the host, whose lambdas no kernel calls.
+template <class T>
+struct Listed {
+  T const* list;
+  KOKKOS_INLINE_FUNCTION T const& operator()(int m) const { return list[m]; }
+};
+
 /// Directions across the edge where the node is: unit, at right angles to one another.
 struct AcrossEdge {
   Vec3 direction[3];

@@ -142,12 +142,17 @@ class ShapeSmoothing {
     for (int c = 0; c < 8; ++c) cell.corner[c] = x[nodes.node(c)];
     return cell;
   }
+  /// As cell_edges() asks for them.
+  struct CornersOf {
+    kernels::HexCell cell;
+    KOKKOS_INLINE_FUNCTION kernels::LaneVec3<double> operator()(int i, int j, int k) const {
+      Vec3 const& p = cell.corner[i + 2 * j + 4 * k];
+      return {p.x, p.y, p.z};
+    }
+  };
   /// Inside out somewhere, by the certificate, and not in the baseline.
   [[nodiscard]] bool broken(CellNodes const& nodes, double handedness) const {
-    auto const edges = kernels::cell_edges<double>([&](int i, int j, int k) {
-      Vec3 const p = x_[nodes.node(i + 2 * j + 4 * k)];
-      return kernels::LaneVec3<double>(p.x, p.y, p.z);
-    });
+    auto const edges = kernels::cell_edges<double>(CornersOf{corners(x_, nodes)});
     auto const floor = kernels::jacobian_floor(edges, handedness);
     if (floor.least > floor.arithmetic) return false;
     auto const negative = [&](Coordinates const& x) {

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -292,8 +293,9 @@ Kokkos::View<T*, typename Exec::memory_space> reachable(Exec const& exec, char c
   if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>) {
     return host;
   } else {
-    Kokkos::View<T*, typename Exec::memory_space> copy(Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label),
-                                                       host.extent(0));
+    // As a string: Kokkos takes another kind of pointer for memory to wrap.
+    Kokkos::View<T*, typename Exec::memory_space> copy(
+        Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, std::string(label)), host.extent(0));
     Kokkos::deep_copy(exec, copy, host);
     return copy;
   }

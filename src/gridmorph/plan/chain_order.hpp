@@ -14,7 +14,7 @@ struct ChainPlace {
   int block = -1;
   int axis = 0;
   std::optional<Law> law = {};  ///< nothing: as the options say
-  friend auto operator<=>(ChainPlace const&, ChainPlace const&) = default;
+  auto operator<=>(ChainPlace const&) const = default;
 };
 
 /// What decides which of the chains that can be next come first.

@@ -45,7 +45,7 @@ struct MergeLimits {
 struct BlockFace {
   int block = -1;
   int axis = 0, side = 0;
-  friend auto operator<=>(BlockFace const&, BlockFace const&) = default;
+  auto operator<=>(BlockFace const&) const = default;
 };
 
 class Blocks {

@@ -151,10 +151,15 @@ Vec3 MiddleNodes::on_surfaces(Index32 row, Vec3 const& place) const {
   if (k < 0) return place;
   auto const surfaces = plan_.middle_surfaces[k];
   Vec3 const baseline = mesh_.coordinates[plan_.middle.target[std::size_t(row)]];
-  auto const surface = [&](int m) { return plan_.surfaces[std::size_t(surfaces[std::size_t(m)])].view(); };
+  std::vector<kernels::SlipSurfaceView> views;
+  std::vector<double> own_offsets;
+  for (Index32 const surface : surfaces) {
+    views.push_back(plan_.surfaces[std::size_t(surface)].view());
+    own_offsets.push_back(views.back().own_offset(baseline));
+  }
   Vec3 u = place - baseline, unused;
-  kernels::constrain_to_all<false>(
-      int(surfaces.size()), surface, [&](int m) { return surface(m).own_offset(baseline); }, baseline, u, unused);
+  kernels::constrain_to_all<false>(int(views.size()), kernels::Listed<kernels::SlipSurfaceView>{views.data()},
+                                   kernels::Listed<double>{own_offsets.data()}, baseline, u, unused);
   return baseline + u;
 }
 

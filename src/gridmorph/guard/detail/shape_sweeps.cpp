@@ -1,6 +1,7 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/guard/detail/shape_step.hpp>
 #include <gridmorph/guard/detail/shape_sweeps.hpp>
+#include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/slip_edge.hpp>
 
 namespace gridmorph::detail {
@@ -96,11 +97,17 @@ class Sweeps {
     }
     restrict_to_tangents(sum, across, count);
   }
+  /// The surfaces of one point, as constrain_to_all() asks for them.
+  struct Surfaces {
+    kernels::SlipSurfaceView const* all;
+    int const* which;
+    KOKKOS_INLINE_FUNCTION kernels::SlipSurfaceView const& operator()(int m) const { return all[which[m]]; }
+  };
   [[nodiscard]] Vec3 slid(SlidingPoint const& slide, Vec3 const& u) const {
     Vec3 out = to_node(slide.node.matrix, u), unused;
-    kernels::constrain_to_all<false>(
-        slide.count, [&](int m) -> kernels::SlipSurfaceView const& { return surface(slide, m); },
-        [&](int m) { return slide.own_offset[std::size_t(m)]; }, baseline_[slide.node.node], out, unused);
+    kernels::constrain_to_all<false>(slide.count, Surfaces{surfaces_.data(), slide.surface.data()},
+                                     kernels::Listed<double>{slide.own_offset.data()}, baseline_[slide.node.node], out,
+                                     unused);
     return to_point(slide.node.matrix, out);
   }
   [[nodiscard]] kernels::SlipSurfaceView const& surface(SlidingPoint const& slide, int m) const {

@@ -199,7 +199,7 @@ class Parser {
     for (Index p = 0; p < n; ++p) {
       expect_line(p, n, "points");
       c.point = p;
-      for (c.component = 0; c.component < z.dimension; ++c.component) {
+      for (c.component = 0; c.component != z.dimension; ++c.component) {
         auto const text = word();
         c.value = expect<double>(text, "a coordinate");
         z.coordinates.push_back(c.value);

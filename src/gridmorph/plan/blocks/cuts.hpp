@@ -14,7 +14,7 @@ struct CutPlane {
   int zone = -1;
   int axis = 0;
   int index = 0;
-  friend auto operator<=>(CutPlane const&, CutPlane const&) = default;
+  auto operator<=>(CutPlane const&) const = default;
 };
 
 /// The planes of cuts. Throws PlanError naming every cut in a zone that is not there, or not inside it.

@@ -6,13 +6,6 @@
 namespace gridmorph {
 namespace {
 
-/// What walk_line() visits, one after another; a lambda would be a function for the host alone, which nvcc refuses
-/// there.
-struct StoreAlong {
-  double* first;
-  KOKKOS_INLINE_FUNCTION void operator()(int position, double t) const { first[position] = t; }
-};
-
 /// Lattice offset of side q (0, 1: a lower, upper; 2, 3: b) or edge e (a upper = 1, b upper = 2) around a chain piece.
 Index3 side_which(int q, int s) {
   Index3 w{s, 1, 1};
@@ -179,7 +172,8 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
       if (repeated) return;
       tables.lines.push_back({side, w});
       Index const at = tables.sides[side].first + Index(device.n_s) * w;
-      kernels::walk_line(table, tube, a, b, context.lengths, StoreAlong{tables.t.data() + at});
+      kernels::walk_line(table, tube, a, b, context.lengths,
+                         [t = tables.t.data() + at](int position, double fraction) { t[position] = fraction; });
     };
     for (int b = 0; b < tube.n_b; ++b) {
       if (tube.a_begin == 0) add_line(0, 0, b);

@@ -47,14 +47,6 @@ void for_end_nodes(PlanContext const& context, Chain const& chain, ChainLayout c
   });
 }
 
-struct Step {
-  int at;
-  double* t;
-  KOKKOS_INLINE_FUNCTION void operator()(int position, double fraction) const {
-    if (position == at) *t = fraction;
-  }
-};
-
 /// Steps along a line from its wall node to the first node that is no nearer than `least`, or to the last one but one
 /// of its segment.
 int steps_to_resolved(kernels::Segment const& segment, Index node, kernels::Field<double const> const& x,
@@ -123,7 +115,9 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
         int const steps = steps_to_resolved(segment, node, x, context.roots->resolved_arm());
         Vec3 const edge = x[node + steps * segment.stride_s] - x[node];
         double t = 0;
-        kernels::walk_line(table, tube, a, b, x, Step{steps, &t});
+        kernels::walk_line(table, tube, a, b, x, [&](int position, double fraction) {
+          if (position == steps) t = fraction;
+        });
         Vec3 normal = fan_normal(context.roots->nodes()[root].around);
         if (matrix >= 0) normal = context.rotations[matrix] * normal;
         double const size = norm(normal);
