@@ -67,7 +67,7 @@ struct Volume {
         d->sides,         d->t.data(),   d->law_knots.data(), d->ends.read(),  d->residuals.read(),
         turned,           field.array(), {field.array()}};
     Touched const touched = touched_by_volume(prepared.plan());
-    return {[=] { kernels::launch("gridmorph::bench::volume", exec, 0, d->boxes.n_items, kernel); }, touched.nodes,
+    return {[=] { kernels::pass_volume(exec, d->volume_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};
   }
 };

@@ -18,6 +18,7 @@
 #include <gridmorph/kernels/turned_row.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
 
+#include <cstdint>
 #include <type_traits>
 
 namespace gridmorph::kernels {
@@ -65,8 +66,23 @@ struct TurnedEndsBatch {
   }
 };
 
-/// One item per tile of a box. With `Move`, out = baseline + u; `baseline` and `out` may be the same arrays.
-template <class MemorySpace, class Shape, bool Move>
+/// What the terms of a box may have. A kernel that leaves out what its boxes have not needs a fraction of the
+/// registers, and so a GPU runs several times as many of its items at once; the host has one kernel for all.
+enum class VolumeKind {
+  plain,   ///< neither known sides, nor ends that turn, nor frames of their own, nor a motion in common
+  turned,  ///< no known sides
+  any
+};
+inline constexpr int n_volume_kinds = 3;
+
+/// Ascending items: those of boxes of kind k are from first[k] to first[k + 1].
+struct ItemsByKind {
+  Index first[n_volume_kinds + 1] = {};
+};
+
+/// One item per tile of a box, of boxes of a kind. With `Move`, out = baseline + u; `baseline` and `out` may be the
+/// same arrays.
+template <class MemorySpace, class Shape, bool Move, VolumeKind Kind = VolumeKind::any>
 struct VolumePass {
   Kokkos::View<VolumeBox const*, MemorySpace> boxes;
   Kokkos::View<VolumeTerm const*, MemorySpace> terms;
@@ -86,6 +102,16 @@ struct VolumePass {
   static constexpr int width = Shape::volume_i;
   using Row = VectorRow<width>;
 
+  /// The same for boxes of another kind.
+  template <VolumeKind Other>
+  [[nodiscard]] VolumePass<MemorySpace, Shape, Move, Other> of_kind() const {
+    VolumePass<MemorySpace, Shape, Move, Other> other{boxes,  terms,    first_item, chains,   matrices,
+                                                      sides,  t,        law_knots,  ends,     residuals,
+                                                      turned, baseline, {},         n_fields, common};
+    for (int f = 0; f < n_fields; ++f) other.out[f] = out[f];
+    return other;
+  }
+
   static Index items(VolumeBox const& box) {
     return tiles(box.n[0], Shape::volume_i) * tiles(box.n[1], Shape::volume_j) * tiles(box.n[2], Shape::volume_k);
   }
@@ -95,11 +121,10 @@ struct VolumePass {
     VolumeBox const& box = boxes(entry);
     int const n_terms = common.leaves_out ? box.n_swept : box.n_terms;
     if (common.leaves_out && n_terms == 0) return;
-    Index local = item - first_item(entry);
-    Index const tiles_i = tiles(box.n[0], Shape::volume_i), tiles_j = tiles(box.n[1], Shape::volume_j);
-    int const i = int(local % tiles_i) * Shape::volume_i;
-    local /= tiles_i;
-    int const j0 = int(local % tiles_j) * Shape::volume_j, k0 = int(local / tiles_j) * Shape::volume_k;
+    Index const local = item - first_item(entry);
+    // Numbers of 64 bits are divided by some hundred instructions on GPUs, and there every node is a tile.
+    auto const [i, j0, k0] =
+        local <= 0xffffffffLL ? first_node<std::uint32_t>(box, local) : first_node<Index>(box, local);
     int const n = smaller(width, box.n[0] - i);
     int const j1 = smaller(j0 + Shape::volume_j, box.n[1]), k1 = smaller(k0 + Shape::volume_k, box.n[2]);
     for (int k = k0; k < k1; ++k)
@@ -109,13 +134,25 @@ struct VolumePass {
           Index const node = box.first + i + j * box.stride_j + k * box.stride_k;
           for (int m = 0; m < n_terms; ++m) {
             add_term(box, terms(box.first_term + m), m == 0, f, i, j, k, n, u);
-            if (m + 1 == box.n_swept && !common.leaves_out) add_common(box, f, node, n, u);
+            if constexpr (Kind != VolumeKind::plain)
+              if (m + 1 == box.n_swept && !common.leaves_out) add_common(box, f, node, n, u);
           }
           write(node, n, u, out[f]);
         }
   }
 
  private:
+  struct IJK {
+    int i, j, k;
+  };
+  /// Of a tile.
+  template <class Int>
+  KOKKOS_INLINE_FUNCTION static IJK first_node(VolumeBox const& box, Index tile) {
+    Int const tiles_i = Int(tiles(box.n[0], Shape::volume_i)), tiles_j = Int(tiles(box.n[1], Shape::volume_j));
+    Int const row = Int(tile) / tiles_i, plane = row / tiles_j;
+    return {int(Int(tile) - row * tiles_i) * Shape::volume_i, int(row - plane * tiles_j) * Shape::volume_j,
+            int(plane) * Shape::volume_k};
+  }
   KOKKOS_INLINE_FUNCTION static int smaller(int a, int b) { return a < b ? a : b; }
 
   /// u = (first) or u += the displacement that one chain gives to a row.
@@ -128,20 +165,23 @@ struct VolumePass {
                       term.end_stride[0],
                       term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
                       n};
-    if (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none) {
+    if (Kind == VolumeKind::plain || (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none)) {
       first ? interpolate<false>(chain, row, u) : interpolate<true>(chain, row, u);
       return;
     }
-    Row v;
-    interpolate<false>(chain, row, v);
-    if (chain.turn != TurnLaw::none)
-      add_turned(chain, term, f, row, box.first + i + j * box.stride_j + k * box.stride_k, v);
-    if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, row.t, v);
-    if (term.matrix >= 0) turn(matrices(term.matrix), n, v);
-    for (int w = 0; w < n; ++w) {
-      u.x[w] = first ? v.x[w] : u.x[w] + v.x[w];
-      u.y[w] = first ? v.y[w] : u.y[w] + v.y[w];
-      u.z[w] = first ? v.z[w] : u.z[w] + v.z[w];
+    if constexpr (Kind != VolumeKind::plain) {
+      Row v;
+      interpolate<false>(chain, row, v);
+      if (chain.turn != TurnLaw::none)
+        add_turned(chain, term, f, row, box.first + i + j * box.stride_j + k * box.stride_k, v);
+      if constexpr (Kind == VolumeKind::any)
+        if (chain.first_side >= 0) add_correction(chain, term, f, i, j, k, n, row.t, v);
+      if (term.matrix >= 0) turn(matrices(term.matrix), n, v);
+      for (int w = 0; w < n; ++w) {
+        u.x[w] = first ? v.x[w] : u.x[w] + v.x[w];
+        u.y[w] = first ? v.y[w] : u.y[w] + v.y[w];
+        u.z[w] = first ? v.z[w] : u.z[w] + v.z[w];
+      }
     }
   }
 
@@ -297,11 +337,22 @@ struct VolumePass {
     });
   }
 };
-/// All nodes inside the boxes that the pass was made for; n_items: of its list of boxes.
+/// All nodes inside the boxes that the pass was made for.
 template <class Exec, class Shape, bool Move>
-void pass_volume(Exec const& exec, Index n_items, VolumePass<typename Exec::memory_space, Shape, Move> const& pass) {
+void pass_volume(Exec const& exec, ItemsByKind const& items,
+                 VolumePass<typename Exec::memory_space, Shape, Move> const& pass) {
   static_assert(std::is_same_v<Shape, TileShape<Exec>>, "the tiles of another execution space");
-  launch("gridmorph::volume", exec, 0, n_items, pass);
+  if constexpr (Shape::host) {
+    launch("gridmorph::volume", exec, 0, items.first[n_volume_kinds], pass);
+  } else {
+    auto const of = [&]<VolumeKind kind>() {
+      launch("gridmorph::volume", exec, items.first[int(kind)], items.first[int(kind) + 1],
+             pass.template of_kind<kind>());
+    };
+    of.template operator()<VolumeKind::plain>();
+    of.template operator()<VolumeKind::turned>();
+    of.template operator()<VolumeKind::any>();
+  }
 }
 
 }  // namespace gridmorph::kernels

@@ -2,6 +2,7 @@
 #include <gridmorph/core/large_pages.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace gridmorph::detail {
@@ -100,6 +101,28 @@ std::vector<kernels::NearFieldLine> shifted(std::vector<kernels::NearFieldLine> 
     line.upper += shift.end_value;
   }
   return lines;
+}
+
+/// What the terms of a box have.
+kernels::VolumeKind kind_of(kernels::VolumeBox const& box, JoinedTables const& joined) {
+  auto kind = box.common < 0 ? kernels::VolumeKind::plain : kernels::VolumeKind::turned;
+  for (std::int32_t n = 0; n < box.n_terms; ++n) {
+    kernels::VolumeTerm const& term = joined.terms[std::size_t(box.first_term + n)];
+    kernels::Chain const& chain = joined.lines.chains[std::size_t(term.chain)];
+    if (chain.first_side >= 0) return kernels::VolumeKind::any;
+    if (chain.turn != kernels::TurnLaw::none || term.matrix >= 0) kind = kernels::VolumeKind::turned;
+  }
+  return kind;
+}
+
+/// Of boxes that are sorted by kind; `items`: how many a box has.
+template <class Items>
+kernels::ItemsByKind items_by_kind(JoinedTables const& joined, Items const& items) {
+  kernels::ItemsByKind out;
+  for (kernels::VolumeBox const& box : joined.boxes)
+    for (int kind = int(kind_of(box, joined)) + 1; kind <= kernels::n_volume_kinds; ++kind)
+      out.first[kind] += items(box);
+  return out;
 }
 
 void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
@@ -242,6 +265,10 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     append(joined.terms, of_box[b]);
     joined.boxes.push_back(box);
   }
+  if constexpr (!Shape::host)
+    std::stable_sort(joined.boxes.begin(), joined.boxes.end(),
+                     [&](auto const& a, auto const& b) { return kind_of(a, joined) < kind_of(b, joined); });
+  volume_items = items_by_kind(joined, Volume::items);
 
   lines.chains = table(exec, joined.lines.chains, "chains");
   lines.segments = table(exec, joined.lines.segments, "segments");

@@ -144,7 +144,8 @@ struct DevicePlan {
   WorkList<kernels::NodeCopy, Memory> boundary_projections, skeleton_nodes;
   std::vector<DeviceStage<Exec>> stages;
   std::vector<DeviceSpread<Exec>> spreads;
-  WorkList<kernels::VolumeBox, Memory> boxes;
+  WorkList<kernels::VolumeBox, Memory> boxes;  ///< off the host kind after kind
+  kernels::ItemsByKind volume_items;
   Kokkos::View<kernels::VolumeTerm*, Memory> terms;
   Kokkos::View<double*, Memory> t;          ///< line parameters
   Kokkos::View<double*, Memory> law_knots;  ///< of laws that are tables

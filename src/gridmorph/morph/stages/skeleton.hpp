@@ -262,7 +262,7 @@ class AddCommon : OnSkeleton<Exec> {
     auto volume = volume_pass<false>(this->plan(), f.baseline, f);
     volume.common.leaves_out = true;
     volume.out[volume.n_fields++] = VectorView<typename Exec::memory_space>(this->plan().common->before).array();
-    kernels::pass_volume(exec, this->plan().boxes.n_items, volume);
+    kernels::pass_volume(exec, this->plan().volume_items, volume);
   }
 };
 

@@ -62,7 +62,7 @@ class WriteBlocks {
                                           read(fields[std::size_t(volume.n_fields)].skeleton), field.array(), x);
       volume.out[volume.n_fields++] = field.array();
     }
-    kernels::pass_volume(exec, plan.boxes.n_items, volume);
+    kernels::pass_volume(exec, plan.volume_items, volume);
   }
 
   BlockTables<Exec> tables_;
