@@ -40,7 +40,7 @@ class FoundBlocksRun : public CommandTest {
   [[nodiscard]] std::string notes_of(std::string const& case_text) const {
     write("noted.toml", case_text);
     Outcome const run = gridmorph("morph noted.toml -o noted.cgns --json");
-    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_LE(run.status, 1) << run.err;  // 1: the mesh falls short of a limit
     std::string out;
     auto const document = nlohmann::json::parse(run.out);
     for (auto const& note : document["notes"]) out += note.get<std::string>() + "\n";
@@ -70,6 +70,30 @@ TEST_F(FoundBlocksRun, AreMorphedAsTheBlocksThatTheyWereAndTheFileStaysOneOfElem
     return note.template get<std::string>().find(said) != std::string::npos;
   })) << notes;
   EXPECT_FALSE(report["stages"].empty()) << "stages are those of blocks";
+}
+
+/// Connections pair nodes that lie within 1e-6 of the mesh size, blocks within 1e-8.
+TEST_F(FoundBlocksRun, AreElementsWherePeriodicSidesLieFartherApartThanThoseOfBlocksMay) {
+  Mesh mesh = read_mesh(path("hexahedra.cgns").string());
+  double const size = mesh.size();
+  for (Connection const& c : mesh.connections) {
+    if (!c.periodic || c.nodes.size() < 2) continue;
+    for (std::size_t n = 0; n < c.donor_nodes.size(); ++n) {
+      Index const node = c.donor_nodes[n];
+      Vec3 const p = mesh.coordinates[node];
+      mesh.coordinates.set(node, {p.x + (n % 2 == 0 ? 3e-8 : -3e-8) * size, p.y, p.z});
+    }
+    break;
+  }
+  write_mesh(path("apart.cgns").string(), mesh);
+  std::string const apart =
+      "[mesh]\ninput = \"apart.cgns\"\noutput = \"out.cgns\"\naxis = \"x\"\n"
+      "[[motion]]\npatches = \"blade\"\nrule = \"rigid\"\ntranslation = [1e-5, 0, 0]\n"
+      "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n"
+      "[[motion]]\npatches = [\"inlet\", \"outlet\"]\nrule = \"fixed\"\n";
+  std::string const notes = notes_of(apart);
+  EXPECT_NE(notes.find("periodic sides lie farther apart"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("morphed as elements"), std::string::npos) << notes;
 }
 
 TEST_F(FoundBlocksRun, SequencesAndFieldsGoBackToTheElements) {

@@ -57,7 +57,8 @@ class ContouredClearance : public WheelTest {
     return out;
   }
   static std::string case_of(std::string const& input, bool axis, std::string const& blade) {
-    return "[mesh]\ninput = \"" + input + "\"\noutput = \"morphed.cgns\"\n" + (axis ? "axis = \"x\"\n" : "") +
+    return std::string("[mesh]\n") + (input == "elements.cgns" ? "blocks = \"off\"\n" : "") + "input = \"" + input +
+           "\"\noutput = \"morphed.cgns\"\n" + (axis ? "axis = \"x\"\n" : "") +
            "[[motion]]\npatches = [\"blade\", \"tip\"]\nrule = \"formula\"\n" + blade +
            "[[motion]]\npatches = [\"hub\", \"inlet\", \"outlet\"]\nrule = \"fixed\"\n" +
            "[[clearance]]\nname = \"rotor\"\ntips = \"tip\"\nwalls = \"case\"\n";

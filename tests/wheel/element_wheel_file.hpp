@@ -212,6 +212,18 @@ struct ElementWheelFile {
   }
 };
 
+/// All nodes of the wheel of a mesh of blocks and of the same passage as hexahedra.
+inline void expect_same_nodes(WheelFile const& of_blocks, ElementWheelFile const& of_elements, double within) {
+  ASSERT_EQ(of_blocks.zones.size(), of_elements.zones.size());
+  double worst = 0;
+  for (auto const& [name, zone] : of_blocks.zones) {
+    FileZone const& other = of_elements.zones.at(name);
+    ASSERT_EQ(zone.x.size(), other.x.size()) << name;
+    for (std::size_t n = 0; n < zone.x.size(); ++n) worst = std::max(worst, distance(zone.at(n), other.at(n)));
+  }
+  EXPECT_LT(worst, within);
+}
+
 /// Boundaries that rules give, in every passage, of the wheel of a mesh of blocks and of the same passage as hexahedra
 /// or what they are split into. `slipping`: families of the others, and `off_them`: without the nodes of those.
 inline void expect_same_boundaries(Mesh const& blocks, std::set<std::string> const& slipping,

@@ -36,15 +36,13 @@ class ElementWheel : public WheelTest {
     write_mesh(folder.file(name + ".cgns"), mesh);
     case_of(name, demo_rules);
   }
-  void case_of(std::string const& name, std::string const& motion) const {
-    folder.write(name + ".toml",
-                 "[mesh]\ninput = \"" + name + ".cgns\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" + motion);
+  /// Of elements as such; `blocks_found`: as the blocks found in them.
+  void case_of(std::string const& name, std::string const& motion, bool blocks_found = false) const {
+    folder.write(name + ".toml", "[mesh]\ninput = \"" + name + ".cgns\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" +
+                                     (name == "blocks" || blocks_found ? "" : "blocks = \"off\"\n") + motion);
   }
   [[nodiscard]] Mesh morphed(std::string const& name) const {
-    // Wheels take elements as they are.
-    folder.write("one.toml",
-                 "[mesh]\nblocks = \"off\"\n" + text(name + ".toml").substr(std::string("[mesh]\n").size()));
-    EXPECT_LE(gridmorph("morph one.toml"), 1) << text("err");  // 1: quality falls short of its limits
+    EXPECT_LE(gridmorph("morph " + name + ".toml"), 1) << text("err");  // 1: quality falls short of its limits
     return read_mesh(folder.file("morphed.cgns"));
   }
   [[nodiscard]] ElementWheelFile element_wheel(std::string const& case_file, std::string const& keys) const {
@@ -108,6 +106,24 @@ TEST_F(ElementWheel, MovesBoundariesAsTheWheelOfTheBlocks) {
   WheelFile const of_blocks = wheel("blocks.toml", three_blades);
   ElementWheelFile const of_elements = element_wheel("hexahedra", three_blades);
   expect_same_boundaries(blocks, {"hub", "case"}, of_blocks, of_elements);
+}
+
+/// By default hexahedra are the blocks found in them, and all nodes are where those of the blocks of the file are.
+TEST_F(ElementWheel, OfBlocksFoundInElementsIsTheWheelOfTheBlocks) {
+  write_mesh(folder.file("blocks.cgns"), blocks);
+  case_of("blocks", demo_rules);
+  case_of("hexahedra", demo_rules, true);
+  for (std::string const& keys : {std::string(three_blades), std::string("passages = 3\nfactors = [0.5]\n"),
+                                  three_blades + std::string("[guard]\nsmooth = true\n")}) {
+    WheelFile const of_blocks = wheel("blocks.toml", keys);
+    ElementWheelFile const of_elements = element_wheel("hexahedra", keys);
+    EXPECT_NE(text("out").find("blocks found in"), std::string::npos) << text("out");
+    of_elements.expect_same_bits();
+    EXPECT_EQ(of_elements.n_periodic(), of_blocks.n_periodic());
+    FaceCount const faces = of_elements.count_faces();
+    EXPECT_EQ(faces.open + faces.claimed, 0);
+    expect_same_nodes(of_blocks, of_elements, 1e-9 * size());
+  }
 }
 
 TEST_F(ElementWheel, OfDifferentBladesIsClosedFaceByFace) {

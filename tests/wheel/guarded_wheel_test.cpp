@@ -36,8 +36,8 @@ class GuardedWheel : public WheelTest {
   static std::string rules(std::string const& amplitude, std::string const& input = "passage.cgns") {
     std::string motion = demo_rules;
     motion.insert(motion.find("daxial"), "amplitude = " + amplitude + "\n");
-    return (input == "passage.cgns" ? without_layer : "") + "[mesh]\ninput = \"" + input +
-           "\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" + motion;
+    return (input == "passage.cgns" ? without_layer + "[mesh]\n" : "[mesh]\nblocks = \"off\"\n") + "input = \"" +
+           input + "\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" + motion;
   }
   static std::string guard(std::string const& keys) {
     return "\n[guard]\nwrite_inverted = true\nretry = false\n" + keys;

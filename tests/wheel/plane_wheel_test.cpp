@@ -38,8 +38,7 @@ twist_deg = )" +
            std::to_string(twist_deg) + row_followers;
   }
   [[nodiscard]] Coordinates morphed(double twist_deg) const {
-    // Wheels take elements as they are.
-    folder.write("one.toml", "[mesh]\nblocks = \"off\"\n" + case_of(twist_deg).substr(std::string("[mesh]\n").size()));
+    folder.write("one.toml", case_of(twist_deg));
     EXPECT_LE(gridmorph("morph one.toml"), 1) << text("err");
     return read_mesh(folder.file("morphed.cgns")).coordinates;
   }

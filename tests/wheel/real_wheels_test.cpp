@@ -16,12 +16,14 @@ class RealWheel : public WheelTest {
     std::filesystem::create_symlink(path, folder / (as.empty() ? mesh : as));
     return true;
   }
-  /// The same wheel of its passage as hexahedra, which may fall short of the limits of quality.
-  [[nodiscard]] ElementWheelFile as_elements(std::string const& mesh, std::string const& case_file,
-                                             std::string const& keys) const {
+  /// The same wheel of its passage as hexahedra, which may fall short of the limits of quality; as blocks found in
+  /// these, or as elements.
+  [[nodiscard]] ElementWheelFile as_hexahedra_of(std::string const& mesh, std::string const& case_file,
+                                                 std::string const& keys, bool blocks_found) const {
     write_mesh(folder.file("elements.cgns"), as_hexahedra(read_mesh(folder.file(mesh))));
     std::string rules = text(case_file);
     rules.replace(rules.find(mesh), mesh.size(), "elements.cgns");
+    if (!blocks_found) rules.insert(rules.find("[mesh]\n") + 7, "blocks = \"off\"\n");
     folder.write("elements.toml", rules + "\n[wheel]\noutput = \"element_wheel.cgns\"\n" + keys);
     EXPECT_LE(gridmorph("wheel elements.toml"), 1) << text("out") << text("err");
     return ElementWheelFile(folder.file("element_wheel.cgns"));
@@ -143,11 +145,13 @@ passages = 3
 factors  = [0.3]
 )";
   WheelFile const of_blocks = wheel("stage.toml", keys);
-  ElementWheelFile const of_elements = as_elements("axial_turbine_stage_H.cgns", "stage.toml", keys);
+  ElementWheelFile const of_elements = as_hexahedra_of("axial_turbine_stage_H.cgns", "stage.toml", keys, false);
   of_elements.expect_same_bits();
   EXPECT_EQ(of_elements.n_periodic(), of_blocks.n_periodic());
   expect_same_boundaries(read_mesh(folder.file("axial_turbine_stage_H.cgns")), {"HUB", "SHROUD"}, of_blocks,
                          of_elements, true);
+  expect_same_nodes(of_blocks, as_hexahedra_of("axial_turbine_stage_H.cgns", "stage.toml", keys, true),
+                    1e-9 * read_mesh(folder.file("axial_turbine_stage_H.cgns")).size());
 }
 
 class KaplanWheel : public RealWheel, public ::testing::WithParamInterface<char const*> {};
@@ -164,10 +168,14 @@ TEST_P(KaplanWheel, OfSevenZonesClosesWithDifferentBlades) {
   equal.expect_watertight();
   WheelFile const mixed = wheel("kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n");
   mixed.expect_watertight();
-  ElementWheelFile const of_elements =
-      as_elements("water_turbine.cgns", "kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n");
-  expect_closed(of_elements);
-  expect_same_boundaries(read_mesh(folder.file("water_turbine.cgns")), {"HUB", "SHROUD"}, mixed, of_elements, true);
+  auto const of_elements = [&](bool blocks_found) {
+    return as_hexahedra_of("water_turbine.cgns", "kaplan.toml", "factors = [1, 0.9, 0.5, 0.7, 1.1]\n", blocks_found);
+  };
+  ElementWheelFile const as_elements = of_elements(false), as_blocks = of_elements(true);
+  expect_closed(as_elements);
+  expect_closed(as_blocks);
+  expect_same_boundaries(read_mesh(folder.file("water_turbine.cgns")), {"HUB", "SHROUD"}, mixed, as_elements, true);
+  expect_same_nodes(mixed, as_blocks, 1e-9 * read_mesh(folder.file("water_turbine.cgns")).size());
 }
 
 }  // namespace

@@ -74,8 +74,9 @@ class WaveWheel : public WheelTest {
     for (std::size_t n = 0; n < a.size(); ++n) out = std::max(out, distance(a[n], b[n]));
     return out;
   }
-  [[nodiscard]] static std::string head(std::string const& input = "passage.cgns") {
-    return "[mesh]\ninput = \"" + input + "\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n";
+  [[nodiscard]] static std::string head(std::string const& input = "passage.cgns", bool as_elements = false) {
+    return "[mesh]\ninput = \"" + input + "\"\noutput = \"morphed.cgns\"\naxis = \"x\"\n" +
+           (as_elements ? "blocks = \"off\"\n" : "");
   }
   [[nodiscard]] static std::string blade_rule(std::string const& keys) {
     return "[[motion]]\npatches = \"blade\"\n" + keys + "\n" + followers;
@@ -367,7 +368,7 @@ TEST_F(WaveWheel, PassageTellsTheRunningClearanceOfABladeThatGrows) {
   for (bool const elements : {false, true}) {
     std::string const input = elements ? "elements.cgns" : "passage.cgns";
     if (elements) write_mesh(folder.file(input), as_hexahedra(mesh));
-    folder.write("one.toml", head(input) + blade_rule(rule) + clearance);
+    folder.write("one.toml", head(input, elements) + blade_rule(rule) + clearance);
     ASSERT_LE(gridmorph("morph one.toml --report one.json"), 1) << text("err");
     auto const tip = nlohmann::json::parse(text("one.json"))["clearances"][0];
     EXPECT_EQ(tip["name"], "rotor");
@@ -401,7 +402,7 @@ TEST_F(WaveWheel, EveryPassageHasTheRunningClearanceOfItsOwnBlade) {
   for (bool const elements : {false, true}) {
     std::string const input = elements ? "elements.cgns" : "passage.cgns";
     if (elements) write_mesh(folder.file(input), as_hexahedra(mesh));
-    folder.write("wheel.toml", head(input) + blade_rule(rule) + clearance +
+    folder.write("wheel.toml", head(input, elements) + blade_rule(rule) + clearance +
                                    "[wheel]\noutput = \"w.cgns\"\nfactors = [" + list + "]\n");
     ASSERT_LE(gridmorph("wheel wheel.toml --report w.json"), 1) << text("err");
     auto const passages = nlohmann::json::parse(text("w.json"))["passages"];
@@ -489,8 +490,8 @@ TEST_F(WaveWheel, OfElementsMovesTheSameBlades) {
   std::vector<std::vector<Vec3>> wanted;
   for (int s = 0; s < steps; ++s)
     for (int p = 0; p < n_blades; ++p) wanted.push_back(blade(step(s + 1), p));
-  for (bool const series : {false, true}) {
-    folder.write("elements.toml", head("elements.cgns") + sequence(steps) + blade_rule(rule) + wave(3));
+  for (auto const& [as_elements, series] : {std::pair(false, false), {true, false}, {true, true}}) {
+    folder.write("elements.toml", head("elements.cgns", as_elements) + sequence(steps) + blade_rule(rule) + wave(3));
     ASSERT_LE(gridmorph(std::string("wheel elements.toml") + (series ? " -o series.cgns" : "")), 1) << text("err");
     if (series) {
       for (int s = 0; s < steps; ++s) {

@@ -129,7 +129,6 @@ std::string why_elements(CaseFile const& case_file) {
   if (key != case_file.given.end())
     return fmt::format("{}:{}: [{}] {}is for elements", case_file.source.string(), key->line,
                        key->table.empty() ? key->key : key->table, key->table.empty() ? "" : key->key + " ");
-  if (case_file.wheel) return "[wheel] takes elements as they are";
   if (!case_file.shock_follows.empty()) return "the flow of a shock is solved on the elements";
   for (auto const* regions : {&case_file.motion.regions, &case_file.measured_regions})
     for (InnerRegion const& region : *regions) {

@@ -1,3 +1,5 @@
+#include <gridmorph/boundary/links.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/mesh/found_blocks.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/run/elements_as_blocks.hpp>
@@ -61,6 +63,13 @@ ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elem
                             found.n_left, elements_.n_elements(), found.why_left);
     return;
   }
+  // Connections pair nodes that lie within 1e-6 of the mesh size; what blocks ask of theirs is a hundredth of that.
+  Problems apart;
+  (void)connect(found.mesh, {}, apart);
+  if (!apart.empty()) {
+    why_none_ = elements_.source + ": periodic sides lie farther apart than those of blocks may, 1e-8 of the mesh size";
+    return;
+  }
   blocks_ = std::move(found.mesh);
   long_lines_ = has_long_lines(blocks_);
   blocks_.notes.push_back(fmt::format("{}: {} block{} found in {} {} (`gridmorph blocks` writes them)",
@@ -68,6 +77,11 @@ ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elem
                                       elements_.n_elements(),
                                       elements_.dimension == 2 ? "quadrilaterals" : "hexahedra"));
   element_ = std::move(found.element);
+  Index first_cell = 0;
+  for (Zone const& block : blocks_.zones) {
+    zone_of_block_.push_back(elements_.zone_of_element(element_[std::size_t(first_cell)]));
+    first_cell += Index(block.extent[0] - 1) * (block.extent[1] - 1) * (block.extent[2] - 1);
+  }
   block_node_ = std::move(found.in_blocks);
   node_ = std::move(found.node);
   if (elements_.dimension == 2) {

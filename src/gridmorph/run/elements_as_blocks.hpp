@@ -28,6 +28,8 @@ class ElementsAsBlocks {
   /// The blocks, once; a note of theirs says how many there are.
   [[nodiscard]] Mesh take_blocks() { return std::move(blocks_); }
   [[nodiscard]] Mesh const& elements() const { return elements_; }
+  /// (blocks) the zone that the elements of a block lie in; of those that have some in several zones the first one's.
+  [[nodiscard]] std::vector<int> const& zone_of_block() const { return zone_of_block_; }
 
   /// What the file gets: nodes that are no corner of any element stay.
   [[nodiscard]] Coordinates coordinates(Coordinates const& of_blocks) const;
@@ -41,6 +43,7 @@ class ElementsAsBlocks {
   std::vector<Index32> node_;        ///< (blocks' nodes) the node of the elements, of those that are one the first
   std::vector<Index32> block_node_;  ///< (elements' nodes) a node of the blocks that lies there; -1: none
   std::vector<Index32> element_;     ///< (cells of the blocks)
+  std::vector<int> zone_of_block_;
 };
 
 }  // namespace gridmorph::cli

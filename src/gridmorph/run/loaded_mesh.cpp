@@ -5,7 +5,6 @@
 #include <gridmorph/case/side_file.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/io/file_kind.hpp>
-#include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/undeclared_connections.hpp>
 #include <gridmorph/run/loaded_mesh.hpp>
@@ -308,7 +307,7 @@ void LoadedMesh::match(MatchOptions const& options) {
   matched.notes.insert(matched.notes.end(), found.notes.begin(), found.notes.end());
   if (options.side_file) PendingFile(*options.side_file, side_file_text(mesh(), found, options.present)).commit();
   matched.interfaces.insert(matched.interfaces.end(), found.interfaces.begin(), found.interfaces.end());
-  indexed_ = IndexedMesh(std::move(matched));
+  complete(std::move(matched));
 }
 
 MeshSummary LoadedMesh::summary() const { return is_structured() ? summarize(mesh()) : summarize_elements(*this); }

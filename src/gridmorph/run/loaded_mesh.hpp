@@ -81,6 +81,14 @@ class LoadedMesh {
              std::vector<std::string> const& leave_out, bool find_blocks = false);
   /// Of a mesh as it was read.
   explicit LoadedMesh(Mesh as_read);
+  /// Takes hexahedra as blocks, as with find_blocks.
+  void take_blocks();
+  /// (zones) the zones of the file that blocks found in its elements lie in; empty where the mesh is as in the file.
+  [[nodiscard]] std::vector<int> zones_in_file() const {
+    return as_elements_ ? as_elements_->zone_of_block() : std::vector<int>();
+  }
+  /// Puts in its place the same mesh with more patches and interfaces.
+  void complete(Mesh completed) { indexed_ = IndexedMesh(std::move(completed)); }
 
   [[nodiscard]] IndexedMesh const& indexed() const { return indexed_; }
   [[nodiscard]] Mesh const& mesh() const { return indexed_.mesh(); }
@@ -143,8 +151,6 @@ class LoadedMesh {
   [[nodiscard]] std::unique_ptr<page::PictureMesh> pictures() const;
 
  private:
-  /// Where the elements are blocks, they are taken as such.
-  void take_blocks();
   /// The mesh as its file has it.
   [[nodiscard]] Mesh const& in_file() const { return as_elements_ ? as_elements_->elements() : mesh(); }
   [[nodiscard]] OutputFields in_file(OutputFields const& fields) const {

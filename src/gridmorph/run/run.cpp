@@ -46,10 +46,21 @@ void refuse_missing_files(CaseFile const& case_file) {
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run) {
   refuse_missing_files(case_file);
   MeshSource file = look_at(case_file.input, case_file.leave_out);
-  file.find_blocks =
-      file.kind == MeshKind::unstructured && run != CaseUse::Run::wheel && why_elements(case_file).empty();
+  file.find_blocks = file.kind == MeshKind::unstructured && why_elements(case_file).empty();
   if (!file.find_blocks) refuse_ignored_keys(case_file, {file.kind == MeshKind::unstructured, run, file.format});
   return file;
+}
+
+void check_keys_of_kind(CaseFile const& case_file, MeshSource const& file, CaseUse::Run run, LoadedMesh& mesh) {
+  if (file.find_blocks)
+    refuse_ignored_keys(case_file, {.unstructured = !mesh.is_structured(),
+                                    .run = run,
+                                    .format = file.format,
+                                    .found_blocks = mesh.is_structured()});
+  else if (!case_file.find_blocks && may_have_blocks(mesh.mesh()))
+    mesh.remark(fmt::format(
+        "no blocks were looked for among the hexahedra, since {}; blocks = \"find\" in [mesh] looks for them",
+        why_elements(case_file)));
 }
 
 QualityThresholds thresholds_of(CaseFile const& case_file) {
@@ -78,15 +89,7 @@ Run::Run(CaseFile const& case_file, MeshSource const& file, Console& console)
   Stopwatch watch;
   console.progress("reading " + case_file.input.string());
   mesh_ = std::make_unique<LoadedMesh>(file.path, case_file.side_file, file.leave_out, file.find_blocks);
-  if (file.find_blocks)
-    refuse_ignored_keys(case_file, {.unstructured = !mesh_->is_structured(),
-                                    .run = case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph,
-                                    .format = file.format,
-                                    .found_blocks = mesh_->is_structured()});
-  else if (!case_file.find_blocks && may_have_blocks(mesh_->mesh()))
-    mesh_->remark(fmt::format(
-        "no blocks were looked for among the hexahedra, since {}; blocks = \"find\" in [mesh] looks for them",
-        why_elements(case_file)));
+  check_keys_of_kind(case_file, file, case_file.sequence ? CaseUse::Run::sequence : CaseUse::Run::morph, *mesh_);
   times.push_back({"read", watch.lap(), true});
   console.progress(mesh_->kind().planning);
   check_fields(case_file, mesh_->mesh());

@@ -18,8 +18,11 @@
 namespace gridmorph::cli {
 
 /// The mesh file of a case file, once no key of that is without effect on such a mesh and run; where elements may turn
-/// out to be blocks, Run looks at the keys. Throws ConfigError.
+/// out to be blocks, check_keys_of_kind() looks at the keys. Throws ConfigError.
 MeshSource checked_mesh_file(CaseFile const& case_file, CaseUse::Run run);
+/// The keys once more where blocks were looked for, now that the mesh is read; where they were not, and the mesh may
+/// have some, a remark says why. Throws ConfigError.
+void check_keys_of_kind(CaseFile const& case_file, MeshSource const& file, CaseUse::Run run, LoadedMesh& mesh);
 
 /// [guard] as thresholds of the quality report.
 QualityThresholds thresholds_of(CaseFile const& case_file);

@@ -14,12 +14,12 @@ namespace {
 
 class WheelOnce {
  public:
-  WheelOnce(CaseFile const& case_file, Console& console, std::string const& typed)
+  WheelOnce(CaseFile const& case_file, MeshSource const& file, Console& console, std::string const& typed)
       : case_file_(case_file),
         output_(case_file.wheel->output),
         console_(console),
         page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
-        run_(case_file, console) {
+        run_(case_file, file, console) {
     if (page_) run_.keep_worst();
   }
 
@@ -70,7 +70,7 @@ int wheel_once(CaseFile const& case_file, MeshSource const& file, Console& conso
   // No "output": it is CGNS, whatever the sector is.
   check_run_files(inputs_of(case_file, file),
                   outputs_of({{"wheel", case_file.wheel->output}}, case_file.output_options));
-  return WheelOnce(case_file, console, typed)();
+  return WheelOnce(case_file, file, console, typed)();
 }
 
 }  // namespace gridmorph::cli

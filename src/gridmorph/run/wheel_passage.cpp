@@ -7,6 +7,7 @@
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/guarded_elements.hpp>
+#include <gridmorph/run/run.hpp>
 #include <gridmorph/run/wheel_passage.hpp>
 
 #include <algorithm>
@@ -16,48 +17,109 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// Of elements later, once they are in order; passages that overlap would be no wheel.
-PassageLinks links_of_blocks(Mesh& mesh, TopologyOptions const& options) {
-  if (mesh.is_structured()) return passage_links(mesh, connect_and_check(mesh, options), options);
-  leave_out_repeated_elements(mesh);
-  return {};
+LinkedSector linked(LoadedMesh const& loaded, PassageLinks links, Axis const& axis) {
+  LinkedSector out{loaded.indexed(), std::move(links), {}};
+  out.rows = find_rows(out.mesh(), out.links, axis);
+  return out;
+}
+
+/// Of elements, whose connections pair their nodes.
+LinkedSector linked_elements(LoadedMesh const& loaded, Axis const& axis) {
+  Problems problems;
+  for (auto const& problem : loaded.problems()) problems.add(problem);
+  problems.throw_if_any<MeshError>();
+  return linked(loaded, passage_links(loaded.boundary()), axis);
+}
+
+/// Of blocks; to connect them completes their patches.
+LinkedSector linked_blocks(LoadedMesh& loaded, TopologyOptions const& options, Axis const& axis) {
+  Mesh mesh = loaded.mesh();
+  PassageLinks links = passage_links(mesh, connect_and_check(mesh, options), options);
+  loaded.complete(std::move(mesh));
+  return linked(loaded, std::move(links), axis);
+}
+
+/// The rows of blocks with the numbers of those that the elements make; nothing where they are not the same rows, as
+/// where one zone of the file holds two.
+std::optional<WheelRows> numbered_as(WheelRows const& rows, WheelRows const& of_elements,
+                                     std::vector<int> const& zone_of_block) {
+  if (rows.rows.size() != of_elements.rows.size()) return {};
+  std::vector<int> number(rows.rows.size(), -1);
+  for (std::size_t z = 0; z < zone_of_block.size(); ++z) {
+    int const theirs = of_elements.row_of_zone[std::size_t(zone_of_block[z])];
+    int& own = number[std::size_t(rows.row_of_zone[z])];
+    if (own >= 0 && own != theirs) return {};
+    own = theirs;
+  }
+  WheelRows out = rows;
+  std::vector<bool> taken(number.size(), false);
+  for (std::size_t r = 0; r < number.size(); ++r) {
+    auto const at = std::size_t(number[r]);
+    if (taken[at] || rows.rows[r].passages != of_elements.rows[at].passages) return {};
+    taken[at] = true;
+    out.rows[at] = rows.rows[r];
+  }
+  for (int& row : out.row_of_zone) row = number[std::size_t(row)];
+  return out;
+}
+
+/// Passages that overlap would be no wheel.
+Mesh read_sector(CaseFile const& case_file) {
+  Mesh mesh = load_mesh(case_file.input, case_file.side_file, case_file.leave_out);
+  if (!mesh.is_structured()) leave_out_repeated_elements(mesh);
+  return mesh;
+}
+
+LinkedSector linked_as_read(LoadedMesh& loaded, CaseFile const& case_file) {
+  Axis const& axis = case_file.motion.axis;
+  return loaded.is_structured() ? linked_blocks(loaded, case_file.plan.topology, axis) : linked_elements(loaded, axis);
 }
 
 }  // namespace
 
-WheelPassage::WheelPassage(CaseFile const& case_file)
-    : WheelPassage(case_file, load_mesh(case_file.input, case_file.side_file, case_file.leave_out)) {}
-
-WheelPassage::WheelPassage(CaseFile const& case_file, Mesh mesh)
-    : links_(links_of_blocks(mesh, case_file.plan.topology)), loaded_(std::move(mesh)) {
-  if (loaded_.is_structured()) return;
-  Problems problems;
-  for (auto const& problem : loaded_.problems()) problems.add(problem);
-  problems.throw_if_any<MeshError>();
-  links_ = passage_links(loaded_.boundary());
+WheelPassage::WheelPassage(CaseFile const& case_file, MeshSource const& file)
+    : loaded_(read_sector(case_file)), planned_(linked_as_read(loaded_, case_file)) {
+  if (file.find_blocks && !loaded_.is_structured()) {
+    LoadedMesh blocks = loaded_;
+    blocks.take_blocks();
+    if (blocks.is_structured()) {
+      LinkedSector found = linked_blocks(blocks, case_file.plan.topology, case_file.motion.axis);
+      if (auto rows = numbered_as(found.rows, planned_.rows, blocks.zones_in_file())) {
+        found.rows = std::move(*rows);
+        as_elements_ = std::exchange(planned_, std::move(found));
+      } else {
+        blocks = loaded_;
+        blocks.remark(loaded_.mesh().source +
+                      ": zones hold parts of several rows of blades, so that the wheel is one of elements");
+      }
+    }
+    loaded_ = std::move(blocks);
+  }
+  check_keys_of_kind(case_file, file, CaseUse::Run::wheel, loaded_);
 }
 
-WheelMesh WheelPassage::wheel(WheelRows const& rows, std::vector<int> const& passages, WheelFamilies families) const {
-  if (mesh().file_order.node.empty()) return make_wheel_mesh(mesh(), links_, rows, passages, families);
-  Mesh const ordered = gridmorph::in_file_order(mesh());
-  PassageLinks links = links_;
-  auto const place = node_places(mesh());
+WheelMesh WheelPassage::wheel(std::vector<int> const& passages, WheelFamilies families) const {
+  LinkedSector const& sector = in_file();
+  if (sector.mesh().file_order.node.empty())
+    return make_wheel_mesh(sector.mesh(), sector.links, sector.rows, passages, families);
+  Mesh const ordered = gridmorph::in_file_order(sector.mesh());
+  PassageLinks links = sector.links;
+  auto const place = node_places(sector.mesh());
   for (PassageLink& link : links.all)
     for (auto& pair : link.pairs)
       for (Index& n : pair) n = place[std::size_t(n)];
-  return make_wheel_mesh(ordered, links, rows, passages, families);
+  return make_wheel_mesh(ordered, links, sector.rows, passages, families);
 }
 
 Coordinates WheelPassage::in_file_order(Coordinates const& x) const {
-  return loaded_.is_structured() ? x : gridmorph::in_file_order(mesh(), x);
+  return in_file().mesh().is_structured() ? x : gridmorph::in_file_order(in_file().mesh(), x);
 }
 
-PassagePlan::PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelRows const& rows,
-                         WheelSetup const& setup)
+PassagePlan::PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelSetup const& setup)
     : mesh_(passage.loaded()),
-      rows_(rows),
+      rows_(passage.planned().rows),
       smooth_(case_file.guard.smooth),
-      motion_(mesh_.indexed(), passage.links(), rows, setup.at(setup.moments.front()), setup.same_rules(),
+      motion_(mesh_.indexed(), passage.planned().links, rows_, setup.at(setup.moments.front()), setup.same_rules(),
               with_background(case_file, mesh_.mesh()), setup.blades,
               {case_file.sequence ? int(setup.moments.size()) : 0,
                [&](int step) { return setup.at(setup.moments[std::size_t(step)]); }}),

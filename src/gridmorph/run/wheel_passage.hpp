@@ -11,30 +11,45 @@
 
 namespace gridmorph::cli {
 
+/// A sector with where its zones meet and which rows they make.
+struct LinkedSector {
+  IndexedMesh indexed;
+  PassageLinks links;
+  WheelRows rows;
+
+  [[nodiscard]] Mesh const& mesh() const { return indexed.mesh(); }
+};
+
 class WheelPassage {
  public:
-  /// Reads the mesh and connects its zones. Throws MeshError.
-  explicit WheelPassage(CaseFile const& case_file);
+  /// Reads the mesh and connects its zones; hexahedra are taken as the blocks found among them, as MeshSource says,
+  /// where these make the rows that the zones of the file make. Throws MeshError, ConfigError.
+  WheelPassage(CaseFile const& case_file, MeshSource const& file);
 
   [[nodiscard]] LoadedMesh const& loaded() const { return loaded_; }
-  [[nodiscard]] Mesh const& mesh() const { return loaded_.mesh(); }
-  [[nodiscard]] PassageLinks const& links() const { return links_; }
+  /// What is planned, morphed and measured. Its rows have the numbers of those of in_file().
+  [[nodiscard]] LinkedSector const& planned() const { return planned_; }
+  [[nodiscard]] Mesh const& mesh() const { return planned_.mesh(); }
+  /// What is turned and written: the same, or the elements of the file where that is blocks found among them.
+  [[nodiscard]] LinkedSector const& in_file() const { return as_elements_ ? *as_elements_ : planned_; }
+  /// Coordinates of planned() as in_file() has them.
+  [[nodiscard]] Coordinates in_file(Coordinates const& x) const { return loaded_.in_file(x); }
   /// As it goes into the file.
-  [[nodiscard]] WheelMesh wheel(WheelRows const& rows, std::vector<int> const& passages, WheelFamilies families) const;
+  [[nodiscard]] WheelMesh wheel(std::vector<int> const& passages, WheelFamilies families) const;
+  /// Coordinates of in_file() in the order of the file.
   [[nodiscard]] Coordinates in_file_order(Coordinates const& x) const;
 
  private:
-  WheelPassage(CaseFile const& case_file, Mesh mesh);
-
-  PassageLinks links_;  ///< of blocks found first: it completes the patches of the mesh
   LoadedMesh loaded_;
+  LinkedSector planned_;
+  std::optional<LinkedSector> as_elements_;
 };
 
 /// One plan for all passages, and one guard.
 class PassagePlan {
  public:
-  /// Case file, mesh and rows must outlive the plan. Throws MeshError, MotionError, PlanError.
-  PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelRows const& rows, WheelSetup const& setup);
+  /// Case file and passage must outlive the plan. Throws MeshError, MotionError, PlanError.
+  PassagePlan(WheelPassage const& passage, CaseFile const& case_file, WheelSetup const& setup);
 
   [[nodiscard]] WheelMotion const& motion() const { return motion_; }
   [[nodiscard]] PassageMotions const& passages() const { return motion_.passages(); }

@@ -19,9 +19,9 @@ namespace {
 
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-WheelPassage read(CaseFile const& case_file, Console& console) {
+WheelPassage read(CaseFile const& case_file, MeshSource const& file, Console& console) {
   console.progress("reading " + case_file.input.string());
-  return WheelPassage(case_file);
+  return {case_file, file};
 }
 
 /// Puts a zone of the sector where its passage stands. Cost: 48 bytes per node.
@@ -49,16 +49,16 @@ void add_passage(Certificate& wheel, Certificate const& passage, std::map<int, i
 
 }  // namespace
 
-WheelRun::WheelRun(CaseFile const& case_file, Console& console)
+WheelRun::WheelRun(CaseFile const& case_file, MeshSource const& file, Console& console)
     : case_(case_file),
       console_(console),
-      sector_(read(case_file, console)),
+      sector_(read(case_file, file, console)),
       mesh_(sector_.mesh()),
-      rows_(find_rows(mesh_, sector_.links(), case_file.motion.axis)),
-      setup_(wheel_setup(case_file, mesh_, rows_)),
-      wheel_(sector_.wheel(rows_, setup_.passages(),
+      in_file_(sector_.in_file()),
+      setup_(wheel_setup(case_file, in_file_.mesh(), in_file_.rows)),
+      wheel_(sector_.wheel(setup_.passages(),
                            case_file.wheel->suffix_families ? WheelFamilies::suffixed : WheelFamilies::shared)),
-      shared_(sector_.links(), rows_, true) {
+      shared_(in_file_.links, in_file_.rows, true) {
   if (!case_file.clearances.empty()) clearances_.emplace(case_file, sector_.loaded().boundary());
   time("read");
 }
@@ -83,7 +83,7 @@ void WheelRun::prepare() {
   baseline_ = sector_.loaded().measure(quality_);
   time("quality");
   morphed_ = Coordinates(mesh_.n_nodes());
-  placed_ = Coordinates(mesh_.n_nodes());
+  placed_ = Coordinates(in_file_.mesh().n_nodes());
   find_lost_shapes(*plan_);
   if (case_.guard.retry.value_or(false)) {
     retry();
@@ -119,7 +119,7 @@ void WheelRun::check_wave() const {
         gap = std::max(gap, distance(now[n], later[n]));
       }
       constexpr double same = 1e-9;  // of the displacement: phases are rounded
-      if (gap > same * std::max(size, 1e-6 * sector_.links().mesh_size))
+      if (gap > same * std::max(size, 1e-6 * sector_.planned().links.mesh_size))
         throw MotionError(
             fmt::format("{}: nodal_diameters: what the rules say at t = {:.9g} and a period ({:.6g}) later differs by "
                         "{:.3g}, so that the last blade of the wave would not meet the first; give motions that "
@@ -271,26 +271,28 @@ void WheelRun::keep(std::optional<Coordinates>& worst, Coordinates const& morphe
 
 std::vector<Seams> WheelRun::new_seams() const {
   std::vector<Seams> seams;
-  for (int r = 0; r < int(rows_.rows.size()); ++r)
-    seams.emplace_back(mesh_, shared_, rows_, r, setup_.blades[r].passages);
+  for (int r = 0; r < int(in_file_.rows.rows.size()); ++r)
+    seams.emplace_back(in_file_.mesh(), shared_, in_file_.rows, r, setup_.blades[r].passages);
   return seams;
 }
 
 std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& morphed, std::vector<Seams>& seams,
                                    double& gap) {
+  auto const& [rows, row_of_zone, pitches] = in_file_.rows;
+  Coordinates const in_sector = sector_.in_file(morphed);
   std::map<int, int> zones;
   for (int n = next; n < int(wheel_.zones.size()) && wheel_.zones[n].passage == passage; ++n) {
     int const z = wheel_.zones[n].zone;
     zones[z] = n;
-    place_zone(exec_, mesh_.zones[z], rows_.rows[rows_.row_of_zone[z]].pitch.times(passage), morphed, placed_);
+    place_zone(exec_, in_file_.mesh().zones[z], rows[row_of_zone[z]].pitch.times(passage), in_sector, placed_);
   }
   exec_.fence();
   double mismatch = 0;
-  for (PassageLink const& link : sector_.links().all) mismatch = std::max(mismatch, link.mismatch);
+  for (PassageLink const& link : in_file_.links.all) mismatch = std::max(mismatch, link.mismatch);
   // Copies may differ by as much as the interfaces of the sector mesh do, and as rules that agree.
   double const tolerance =
-      4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance),
-                                            sector_.links().mesh_size, coordinate_resolution(mesh_));
+      4 * mismatch + displacement_tolerance(std::max(1e-8, case_.motion.conformity_tolerance), in_file_.links.mesh_size,
+                                            coordinate_resolution(in_file_.mesh()));
   for (int r = 0; r < int(seams.size()); ++r) {
     if (passage >= setup_.blades[r].passages) continue;
     seams[r].close(passage, placed_);
@@ -300,8 +302,8 @@ std::map<int, int> WheelRun::place(int passage, int next, Coordinates const& mor
       throw MotionError(
           fmt::format("passage {} and its neighbour move the node they share at {} apart by {:.3g}; a blade on a "
                       "periodic side must move alike on both sides of the passage{}",
-                      own.passage + 1, describe_node(mesh_, own.node), own.distance,
-                      rows_.rows[r].pitch.is_straight() ? "" : ", in cylindrical components"));
+                      own.passage + 1, describe_node(in_file_.mesh(), own.node), own.distance,
+                      rows[r].pitch.is_straight() ? "" : ", in cylindrical components"));
   }
   return zones;
 }
@@ -311,7 +313,7 @@ void WheelRun::give(std::map<int, int> const& zones, ZoneSink const& sink) const
   std::map<int, int> in_order;  // of the wheel
   for (auto const& [of_sector, of_wheel] : zones) in_order[of_wheel] = of_sector;
   for (auto const& [of_wheel, of_sector] : in_order) {
-    Index const first = mesh_.zones[of_sector].first_node;
+    Index const first = in_file_.mesh().zones[of_sector].first_node;
     sink(of_wheel, written.x.data() + first, written.y.data() + first, written.z.data() + first);
   }
 }
@@ -322,7 +324,7 @@ WheelMade WheelRun::make(int step, ZoneSink const& sink) {
   WheelMade made;
   auto& [rows, passages, whole, gap] = made.wheel;
   whole.certificate.emplace();
-  whole.unstructured = baseline_.unstructured;
+  whole.unstructured = !in_file_.mesh().is_structured();
   for (Zone const& zone : wheel_.mesh.zones) whole.zone_names.push_back(zone.name);
   auto seams = new_seams();
   int last = -1, next = 0;
@@ -378,10 +380,10 @@ RunDocument WheelRun::document(WheelMade const& made) const {
   out.guarded = guarded_.json;
   out.baseline = baseline_;
   out.wheel = made.wheel;
-  for (std::size_t r = 0; r < rows_.rows.size(); ++r) {
-    WheelRow const& row = rows_.rows[r];
+  for (std::size_t r = 0; r < in_file_.rows.rows.size(); ++r) {
+    WheelRow const& row = in_file_.rows.rows[r];
     auto& told = out.wheel->rows.emplace_back(RowOfPassages{{}, setup_.blades[r].passages, row.passages, {}});
-    for (int const z : row.zones) told.zones.push_back(mesh_.zones[std::size_t(z)].name);
+    for (int const z : row.zones) told.zones.push_back(in_file_.mesh().zones[std::size_t(z)].name);
     if (row.pitch.is_straight()) told.pitch = row.pitch.shift();
   }
   return out;
@@ -391,14 +393,14 @@ RunDocument WheelRun::document(WheelMade const& made) const {
 void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
   std::vector<int> own;
   for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);
-  add_passage(wheel, certify(sector_.loaded().indexed(), placed_, own), zones);
+  add_passage(wheel, certify(in_file_.indexed, placed_, own), zones);
   time("quality");
 }
 
 std::vector<std::string> WheelRun::blades_of(int passage) const {
   std::vector<std::string> out;
-  for (std::size_t r = 0; r < rows_.rows.size(); ++r)
-    if (rows_.rows[r].periodic() && passage < setup_.blades[r].passages)
+  for (std::size_t r = 0; r < in_file_.rows.rows.size(); ++r)
+    if (in_file_.rows.rows[r].periodic() && passage < setup_.blades[r].passages)
       out.push_back(setup_.motions[std::size_t(setup_.blades[r].blades[passage])].name);
   return out;
 }
@@ -421,10 +423,11 @@ std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const
   };
   for (std::size_t t = 0; t < clearances_->size(); ++t) {
     auto const& tip = clearances_->nodes_of_tip(t);
-    auto const row = std::size_t(tip.empty() ? 0 : rows_.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
+    WheelRows const& rows = sector_.planned().rows;
+    auto const row = std::size_t(tip.empty() ? 0 : rows.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
     if (passage >= setup_.blades[row].passages) continue;
     TipClearance found = clearances_->of(t, morphed, by_rule);
-    auto const turned = rows_.rows[row].pitch.times(passage);
+    auto const turned = rows.rows[row].pitch.times(passage);
     found.before.at = turned(found.before.at);
     if (found.by_rule) found.by_rule->at = turned(found.by_rule->at);
     found.after.at = turned(found.after.at);

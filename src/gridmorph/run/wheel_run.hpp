@@ -32,11 +32,10 @@ using ZoneSink = std::function<void(int zone, double const* x, double const* y, 
 class WheelRun {
  public:
   /// Reads the passage. The case file must outlive the run.
-  WheelRun(CaseFile const& case_file, Console& console);
+  WheelRun(CaseFile const& case_file, MeshSource const& file, Console& console);
 
   [[nodiscard]] WheelPassage const& sector() const { return sector_; }
   [[nodiscard]] WheelMesh const& wheel() const { return wheel_; }
-  [[nodiscard]] WheelRows const& rows() const { return rows_; }
   [[nodiscard]] WheelSetup const& setup() const { return setup_; }
   /// What went wrong in the first passage with inverted cells.
   [[nodiscard]] Diagnosis const& diagnosis() const { return worst_of_; }
@@ -59,7 +58,7 @@ class WheelRun {
 
  private:
   [[nodiscard]] std::unique_ptr<PassagePlan> plan_of(CaseFile const& case_file) const {
-    return std::make_unique<PassagePlan>(sector_, case_file, rows_, setup_);
+    return std::make_unique<PassagePlan>(sector_, case_file, setup_);
   }
   /// visit(boundary displacement) for every passage that differs from those before it, of every step. The plan goes to
   /// the step of plan_ in the end.
@@ -94,8 +93,8 @@ class WheelRun {
   Guarded guarded_;
   Diagnosis worst_of_;
   WheelPassage sector_;
-  Mesh const& mesh_;
-  WheelRows rows_;
+  Mesh const& mesh_;             ///< that is morphed
+  LinkedSector const& in_file_;  ///< that is turned and written
   WheelSetup setup_;
   WheelMesh wheel_;
   SharedNodes shared_;
@@ -103,8 +102,9 @@ class WheelRun {
   QualityWanted quality_;
   std::unique_ptr<CaseFile> recipe_;  ///< that the plan refers to, where it is not the case file
   std::unique_ptr<PassagePlan> plan_;
-  int step_ = 0;  ///< that the plan's passages are of
-  Coordinates morphed_, placed_;
+  int step_ = 0;         ///< that the plan's passages are of
+  Coordinates morphed_;  ///< of mesh_
+  Coordinates placed_;   ///< of in_file_
   bool keeps_worst_ = false;
 };
 

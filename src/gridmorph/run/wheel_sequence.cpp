@@ -63,12 +63,13 @@ class WheelFiles {
 
 class WheelSequence {
  public:
-  WheelSequence(CaseFile const& case_file, SequenceOptions options, Console& console, std::string const& typed)
+  WheelSequence(CaseFile const& case_file, MeshSource const& file, SequenceOptions options, Console& console,
+                std::string const& typed)
       : case_file_(case_file),
         options_(std::move(options)),
         console_(console),
         page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
-        run_(case_file, console) {
+        run_(case_file, file, console) {
     if (page_) run_.keep_worst();
   }
 
@@ -144,7 +145,7 @@ int wheel_sequence(CaseFile const& case_file, MeshSource const& file, Console& c
   for (int step = 0; step < (one_file_per_step(options) ? options.steps : 1); ++step)
     wheels.push_back({"wheel", step_path(options, step)});
   check_run_files(inputs_of(case_file, file), outputs_of(std::move(wheels), case_file.output_options));
-  return WheelSequence(case_file, std::move(options), console, typed)();
+  return WheelSequence(case_file, file, std::move(options), console, typed)();
 }
 
 }  // namespace gridmorph::cli
