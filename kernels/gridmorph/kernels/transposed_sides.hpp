@@ -1,8 +1,9 @@
 // Transpose of the correction of line sweeps: side_correction.hpp, and the residuals of side_residual.hpp in reverse.
 //
 // What side line w of a side gives to the chain is read by the nodes (s, a, w) or (s, w, b) of one slab of it, so one
-// work item has the slab and the line to itself. The four edges are read by all nodes of the chain: each slab across b
-// adds up its own part, and the parts are added up after. Sums come in one order whatever the number of threads.
+// work item has the slab and the line to itself; on GPUs it has a share of the slab and a copy of the line, and copies
+// are added up after. The four edges are read by all nodes of the chain: each slab across b adds up its own part, and
+// the parts are added up after. Sums come in one order whatever the number of threads.
 //
 // Cost per node of a chain whose sides are known: 32 bytes read and one or two lookups in a side table for each of the
 // two directions across that its correction blends; nothing is written but on sides.
@@ -10,6 +11,7 @@
 
 #include <gridmorph/kernels/side_residual.hpp>
 #include <gridmorph/kernels/transposed_lines.hpp>
+#include <gridmorph/kernels/volume_pass.hpp>
 
 namespace gridmorph::kernels {
 
@@ -18,6 +20,38 @@ struct SideSlab {
   std::int32_t chain, direction, w;
   std::int32_t first_group, n_groups;  ///< of the chain
   Index edges = -1;                    ///< where its parts of the four edges start, (4, n_s); -1: it has none
+};
+
+/// How many shares a long sum is made in: on GPUs enough to keep them busy.
+template <class Exec>
+inline constexpr int shares_of_sums = TileShape<Exec>::host ? 1 : 32;
+
+/// Sums in the making: one of `of` per share of what is added up, from the side node `first` on.
+struct SumShares {
+  FieldBatch<double> of;
+  Index first = 0;
+};
+
+/// to(first + n) += the shares of n, from `begin` on, one after another.
+template <int Shares>
+struct AddShares {
+  SumShares from;
+  int begin;
+  Field<double> to;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
+    Vec3 sum = to[from.first + n];
+    for (int share = begin; share < Shares; ++share) sum += from.of[share][n];
+    to.set(from.first + n, sum);
+  }
+};
+
+/// The part of n things, from the first to the one past the last, that a share has.
+template <int Shares>
+struct ShareRange {
+  int begin, end;
+  KOKKOS_INLINE_FUNCTION ShareRange(int n, int share)
+      : begin(int(Index(n) * share / Shares)), end(int(Index(n) * (share + 1) / Shares)) {}
 };
 
 /// Gradients of the values that SideTable::at() reads, `g` that of what it gives.
@@ -39,31 +73,33 @@ KOKKOS_INLINE_FUNCTION Index side_line(SideTable<MemorySpace> const& table, Chai
   return table.sides(chain.first_side + q).first + Index(chain.n_s) * w;
 }
 
-/// The gradients of side nodes from those of what the correction gives the nodes of a slab.
-template <class MemorySpace>
+/// The gradients of side nodes from those of what the correction gives the nodes of a slab. One item per slab and
+/// share.
+template <class MemorySpace, int Shares>
 struct SideGradients {
   Kokkos::View<SideSlab const*, MemorySpace> slabs;
   Kokkos::View<LineGroup const*, MemorySpace> groups;
   Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
   BundleGradients<MemorySpace> from;
-  Field<double> c;      ///< per side node
-  Field<double> edges;  ///< parts
+  SumShares c;               ///< per side node
+  FieldBatch<double> edges;  ///< parts
 
-  [[nodiscard]] Index size() const { return Index(slabs.extent(0)); }
+  [[nodiscard]] Index size() const { return Index(slabs.extent(0)) * Shares; }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    SideSlab const& slab = slabs(item);
+    SideSlab const& slab = slabs(item / Shares);
+    int const share = int(item % Shares);
     Chain const& chain = chains(slab.chain);
     for (int m = 0; m < slab.n_groups; ++m) {
       LineGroup const& group = groups(slab.first_group + m);
       int const first = slab.direction == 0 ? group.b : group.a, n = slab.direction == 0 ? group.n_b : group.n_a;
       if (slab.w < first || slab.w >= first + n) continue;
-      int const along = slab.direction == 0 ? group.n_a : group.n_b;
+      ShareRange<Shares> const along(slab.direction == 0 ? group.n_a : group.n_b, share);
       for (int p = 0; p < group.n_bundles; ++p) {
         LineBundle const& bundle = from.bundles(group.first_bundle + p);
         for (int s = 0; s < bundle.n_s; ++s)
-          for (int k = 0; k < along; ++k)
-            add(slab, chain, bundle, s, slab.direction == 0 ? k : slab.w - first,
+          for (int k = along.begin; k < along.end; ++k)
+            add(share, slab, chain, bundle, s, slab.direction == 0 ? k : slab.w - first,
                 slab.direction == 0 ? slab.w - first : k, group);
       }
     }
@@ -71,8 +107,8 @@ struct SideGradients {
 
  private:
   /// Node (s, a, b) counted from the first of its bundle.
-  KOKKOS_INLINE_FUNCTION void add(SideSlab const& slab, Chain const& chain, LineBundle const& bundle, int s, int a,
-                                  int b, LineGroup const& group) const {
+  KOKKOS_INLINE_FUNCTION void add(int share, SideSlab const& slab, Chain const& chain, LineBundle const& bundle, int s,
+                                  int a, int b, LineGroup const& group) const {
     Vec3 const g = from.gradient(bundle, s, a, b);
     double const t = from.parameter(bundle, s, a, b);
     int const on_a = group.a + a, on_b = group.b + b, on_s = bundle.s + s;
@@ -85,15 +121,15 @@ struct SideGradients {
       bool const counts = one_pair ? chain.side_matters(q + m) : inside && ((chain.known_sides >> (q + m)) & 1u) != 0;
       if (!counts) continue;
       Index const line = side_line(sides, chain, q + m, slab.w);
-      add_at(sides, chain, line, t, on_s, (m == 0 ? 1 - own : own) * g, c, line);
+      add_at(sides, chain, line, t, on_s, (m == 0 ? 1 - own : own) * g, c.of[share], line - c.first);
     }
     if (one_pair || !across_a || (chain.known_sides >> 4) == 0) return;
     double const B = sides.across(chain, 1, on_a, on_b, t);
     for (int e = 0; e < 4; ++e) {
       if (((chain.known_sides >> (4 + e)) & 1u) == 0) continue;
       double const weight = (e % 2 == 0 ? 1 - own : own) * (e / 2 == 0 ? 1 - B : B);
-      add_at(sides, chain, side_line(sides, chain, e % 2, e / 2 == 0 ? 0 : chain.n_b - 1), t, on_s, weight * g, edges,
-             slab.edges + e * Index(chain.n_s));
+      add_at(sides, chain, side_line(sides, chain, e % 2, e / 2 == 0 ? 0 : chain.n_b - 1), t, on_s, weight * g,
+             edges[share], slab.edges + e * Index(chain.n_s));
     }
   }
 };
@@ -171,27 +207,31 @@ struct SideFillBack {
   }
 };
 
-/// Gradients of a side's two edges, from `between`. One item per corrected chain, side and edge.
-template <class MemorySpace>
+/// Gradients of a side's two edges, from `between`. One item per corrected chain, side, edge and share.
+template <class MemorySpace, int Shares>
 struct SideEdgesBack {
   Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
   Kokkos::View<std::int32_t const*, MemorySpace> corrected;
   Field<double const> between;
-  Field<double> c;
+  SumShares c;
 
-  [[nodiscard]] Index size() const { return 8 * Index(corrected.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+  [[nodiscard]] Index size() const { return 8 * Index(corrected.extent(0)) * Shares; }
+  KOKKOS_INLINE_FUNCTION void operator()(Index number) const {
+    Index const item = number / Shares;
+    int const share = int(number % Shares);
     Chain const& chain = chains(corrected(item / 8));
     int const q = int(item / 2 % 4), upper = int(item % 2);
     Side const& side = sides.sides(chain.first_side + q);
     Index const edge = side.first + Index(chain.n_s) * (upper == 0 ? 0 : side.n_w - 1);
-    for (int w = 1; w + 1 < side.n_w; ++w) {
+    if (side.n_w < 3) return;
+    ShareRange<Shares> const inside(side.n_w - 2, share);
+    for (int w = 1 + inside.begin; w < 1 + inside.end; ++w) {
       Index const line = side.first + Index(chain.n_s) * w;
       int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : w), b = q == 2 ? 0 : (q == 3 ? chain.n_b - 1 : w);
       for (int p = 0; p < chain.n_s; ++p) {
         double const t = sides.t(line + p), f = sides.across(chain, q < 2 ? 1 : 0, a, b, t);
-        add_at(sides, chain, edge, t, p, (upper == 0 ? 1 - f : f) * between[line + p], c, edge);
+        add_at(sides, chain, edge, t, p, (upper == 0 ? 1 - f : f) * between[line + p], c.of[share], edge - c.first);
       }
     }
   }

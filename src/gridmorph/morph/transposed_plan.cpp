@@ -230,7 +230,13 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
   Index const n_roots = Index(plan.turns.table.roots.extent(0)),
               n_neighbours = Index(plan.turns.table.neighbours.extent(0));
   turn_parts = Workspace<Memory>(exec, std::max(n_neighbours + n_roots, 4 * n_roots), 1, "transposed::turn_parts");
-  edges = Workspace<Memory>(exec, room_for_edges, 1, "transposed::edges");
+  constexpr int shares = kernels::shares_of_sums<Exec>;
+  edges = Workspace<Memory>(exec, room_for_edges, shares, "transposed::edges");
+  if constexpr (shares > 1) {
+    Index most = 0;
+    for (TransposedStage<Exec> const& stage : stages) most = std::max(most, stage.n_side_nodes);
+    sides = Workspace<Memory>(exec, most, shares, "transposed::sides");
+  }
 }
 
 #define GRIDMORPH_INSTANTIATE(Exec) template struct TransposedPlan<Exec>;

@@ -56,7 +56,8 @@ struct TransposedPlan {
   TransposedTurns<Exec> turns;
   kernels::CopiesOf<Memory> boundary_projections, skeleton_nodes;
   Workspace<Memory> between;     ///< per side node
-  Workspace<Memory> edges;       ///< parts of edges; of one stage at a time
+  Workspace<Memory> edges;       ///< parts of edges, a field per share; of one stage at a time
+  Workspace<Memory> sides;       ///< per side node of a stage, a field per share, where there are several
   Workspace<Memory> turn_parts;  ///< of the walls' rotations
 
   TransposedPlan(Exec const& exec, DevicePlan<Exec> const& plan);

@@ -183,19 +183,27 @@ class LineSweep : OnSkeleton<Exec> {
     auto const& plan = this->plan();
     auto const& chains = plan.lines.chains;
     auto const sides = this->sides(f);
-    auto const edges = plan.transposed->edges.batch()[0], between = plan.transposed->between.batch()[0];
+    auto const edges = plan.transposed->edges.batch();
+    auto const between = plan.transposed->between.batch()[0];
     launch("gridmorph::transposed::clear_sides", exec, back.first_side_node, back.first_side_node + back.n_side_nodes,
            kernels::ClearVectors{g.residuals});
-    launch("gridmorph::transposed::clear_edges", exec, 0, plan.transposed->edges.n, kernels::ClearVectors{edges});
-    launch("gridmorph::transposed::sides", exec,
-           kernels::SideGradients<Memory>{back.slabs, back.lines.groups.entries, chains, sides,
-                                          this->gradients(back.lines, f, g, true), g.residuals, edges});
+    clear(exec, plan.transposed->edges);
+    sum_in_shares(exec, back, g, [&](kernels::SumShares const& to) {
+      launch("gridmorph::transposed::sides", exec,
+             kernels::SideGradients<Memory, shares>{back.slabs, back.lines.groups.entries, chains, sides,
+                                                    this->gradients(back.lines, f, g, true), to, edges});
+    });
+    if constexpr (shares > 1)
+      launch("gridmorph::transposed::add_edges", exec, 0, plan.transposed->edges.n,
+             kernels::AddShares<shares>{{edges}, 1, edges[0]});
     launch("gridmorph::transposed::sum_edges", exec,
-           kernels::EdgeSums<Memory>{chains, sides, stage.corrected, back.first_part, read(edges), g.residuals});
+           kernels::EdgeSums<Memory>{chains, sides, stage.corrected, back.first_part, read(edges[0]), g.residuals});
     launch("gridmorph::transposed::fill_sides", exec,
            kernels::SideFillBack<Memory>{chains, sides, stage.side_lines, g.residuals, between});
-    launch("gridmorph::transposed::side_edges", exec,
-           kernels::SideEdgesBack<Memory>{chains, sides, stage.corrected, read(between), g.residuals});
+    sum_in_shares(exec, back, g, [&](kernels::SumShares const& to) {
+      launch("gridmorph::transposed::side_edges", exec,
+             kernels::SideEdgesBack<Memory, shares>{chains, sides, stage.corrected, read(between), to});
+    });
     launch("gridmorph::transposed::fill_edges", exec,
            kernels::EdgeFillBack<Memory>{chains, sides, stage.corrected, g.residuals});
     bool const any = plan.turns.any();
@@ -206,6 +214,30 @@ class LineSweep : OnSkeleton<Exec> {
                any ? plan.turns.side_position.read()[0] : Baseline{nullptr, nullptr, nullptr}, this->end_gradients(g)});
     kernels::copy_back<true>("gridmorph::transposed::known_sides", exec, back.gathers, plan.rotations,
                              read(g.residuals), g.skeleton);
+  }
+
+  static constexpr int shares = kernels::shares_of_sums<Exec>;
+
+  /// All fields of a workspace.
+  static void clear(Exec const& exec, detail::Workspace<Memory> const& of) {
+    Index const n = Index(of.values.extent(0)) / 3;
+    kernels::launch("gridmorph::transposed::clear_shares", exec, 0, n,
+                    kernels::ClearVectors{{of.values.data(), of.values.data() + n, of.values.data() + 2 * n}});
+  }
+  /// sum(shares) adds to the residuals of g, or to shares of them that are added up after.
+  template <class Sum>
+  void sum_in_shares(Exec const& exec, detail::TransposedStage<Exec> const& back, StageField<Exec> const& g,
+                     Sum const& sum) const {
+    if constexpr (shares == 1) {
+      sum(kernels::SumShares{{g.residuals}});
+    } else {
+      auto const& room = this->plan().transposed->sides;
+      clear(exec, room);
+      kernels::SumShares const parts{room.batch(), back.first_side_node};
+      sum(parts);
+      kernels::launch("gridmorph::transposed::add_sides", exec, 0, back.n_side_nodes,
+                      kernels::AddShares<shares>{parts, 0, g.residuals});
+    }
   }
 
   template <bool Rate>
