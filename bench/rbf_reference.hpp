@@ -20,6 +20,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -33,10 +34,10 @@ KOKKOS_INLINE_FUNCTION double wendland_c2(double squared) {
   return s2 * s2 * (4 * r + 1);
 }
 
-/// Solves the dense system a w = b in place for three right sides: Gaussian elimination with row exchange. a: row-major
-/// (n, n).
-inline void solve_dense(std::vector<double>& a, std::vector<Vec3>& b) {
-  std::size_t const n = b.size();
+/// Solves the dense system a w = b in place for each b, of three right sides: Gaussian elimination with row exchange.
+/// a: row-major (n, n).
+inline void solve_dense(std::vector<double>& a, std::span<std::vector<Vec3>> right) {
+  std::size_t const n = right.front().size();
   auto const at = [&](std::size_t row, std::size_t column) -> double& { return a[row * n + column]; };
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t pivot = k;
@@ -45,19 +46,20 @@ inline void solve_dense(std::vector<double>& a, std::vector<Vec3>& b) {
     if (!(std::abs(at(pivot, k)) > 0)) throw std::runtime_error("rbf reference: two centres are the same point");
     if (pivot != k) {
       for (std::size_t column = k; column < n; ++column) std::swap(at(k, column), at(pivot, column));
-      std::swap(b[k], b[pivot]);
+      for (auto& b : right) std::swap(b[k], b[pivot]);
     }
     for (std::size_t row = k + 1; row < n; ++row) {
       double const factor = at(row, k) / at(k, k);
       if (factor == 0) continue;
       for (std::size_t column = k + 1; column < n; ++column) at(row, column) -= factor * at(k, column);
-      b[row] = b[row] - factor * b[k];
+      for (auto& b : right) b[row] = b[row] - factor * b[k];
     }
   }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t column = k + 1; column < n; ++column) b[k] = b[k] - at(k, column) * b[column];
-    b[k] = (1 / at(k, k)) * b[k];
-  }
+  for (auto& b : right)
+    for (std::size_t k = n; k-- > 0;) {
+      for (std::size_t column = k + 1; column < n; ++column) b[k] = b[k] - at(k, column) * b[column];
+      b[k] = (1 / at(k, k)) * b[k];
+    }
 }
 
 /// Weights for centres with given displacements, in a memory space.
@@ -77,7 +79,7 @@ struct RbfField {
         Vec3 const d = inverse_radius * (points[r] - points[c]);
         matrix[r * n + c] = wendland_c2(dot(d, d));
       }
-    solve_dense(matrix, displacement);
+    solve_dense(matrix, {&displacement, 1});
     copy_to(centres, points);
     copy_to(weights, displacement);
   }

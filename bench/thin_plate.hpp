@@ -16,21 +16,16 @@ namespace gridmorph::bench {
 class ThinPlate {
  public:
   /// dimension 2: centres in the plane z = 0. given: fields of the centres' displacements.
-  ThinPlate(std::vector<Vec3> centres, std::vector<std::vector<Vec3>> const& given, int dimension)
-      : centres_(std::move(centres)), dimension_(dimension) {
+  ThinPlate(std::vector<Vec3> centres, std::vector<std::vector<Vec3>> given, int dimension)
+      : centres_(std::move(centres)), weights_(std::move(given)), dimension_(dimension) {
     std::size_t const n = centres_.size(), all = n + std::size_t(dimension) + 1;
-    for (auto const& field : given) {
-      // The elimination works in place; a matrix for each field keeps it simple.
-      std::vector<double> matrix(all * all, 0);
-      for (std::size_t r = 0; r < n; ++r) {
-        for (std::size_t c = 0; c < n; ++c) matrix[r * all + c] = phi(centres_[r], centres_[c]);
-        for (std::size_t k = n; k < all; ++k) matrix[r * all + k] = matrix[k * all + r] = term(centres_[r], k - n);
-      }
-      std::vector<Vec3> weight = field;
-      weight.resize(all);
-      solve_dense(matrix, weight);
-      weights_.push_back(std::move(weight));
+    std::vector<double> matrix(all * all, 0);
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c) matrix[r * all + c] = phi(centres_[r], centres_[c]);
+      for (std::size_t k = n; k < all; ++k) matrix[r * all + k] = matrix[k * all + r] = term(centres_[r], k - n);
     }
+    for (auto& weight : weights_) weight.resize(all);
+    solve_dense(matrix, weights_);
   }
 
   /// Of each field, at a point.

@@ -37,6 +37,12 @@ class PlotTurns(unittest.TestCase):
         self.assertIn(["airfoil, C mesh: gridmorph", "0.932", "-", "-", "-", "0.700", "-"], rows)
         self.assertIn(["thin plate", "0.901", "-", "-", "-", "1,234 inverted", "-"], rows)
 
+    def test_tells_what_designs_keep(self):
+        run = self.run_on(FIGURES + "flap,5,gridmorph,0.97,0\nflap,5,thin plate,0.98,0\n", "--table")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rows = [[c.strip() for c in line.strip("|").split("|")] for line in run.stdout.splitlines()]
+        self.assertIn(["airfoil, flap, degrees", "5", "0.970", "0.980"], rows)
+
     def test_draws(self):
         out = os.path.join(self.folder.name, "turns.png")
         run = self.run_on(FIGURES, "--out", out)

@@ -173,6 +173,23 @@ TEST(RootTurn, KeepsLinesOffTheFacesOfAnEdgeAsWellAsNoTurnWould) {
   EXPECT_GT(limited, 20) << "there is something to keep";
 }
 
+/// The moved arms of a corner in their directions, as long as makes the areas between them what they were: blocks weigh
+/// faces by their areas after, elements by those before.
+void keep_areas(Corner const& corner, std::vector<Vec3>& u) {
+  std::array<Vec3, 3> now;
+  std::array<double, 3> area{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    now[k] = corner.arm[k] + u[k + 1] - u[0];
+    now[k] = (1 / norm(now[k])) * now[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k)
+    area[k] = norm(cross(corner.arm[k], corner.arm[(k + 1) % 3])) / norm(cross(now[k], now[(k + 1) % 3]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    double const length = std::sqrt(area[k] * area[(k + 2) % 3] / area[(k + 1) % 3]);
+    u[k + 1] = u[0] + length * now[k] - corner.arm[k];
+  }
+}
+
 // Where arms are of one length, as elements do not weigh them.
 TEST(RootTurn, IsThatOfAWallOfElementsWithTheSameColumns) {
   Random random(5);
@@ -183,10 +200,15 @@ TEST(RootTurn, IsThatOfAWallOfElementsWithTheSameColumns) {
     std::vector<Vec3> u, rate;
     for (int k = 0; k < 4; ++k) {
       if (k > 0) x.field().set(k, corner.arm[std::size_t(k - 1)]);
-      corner.u.field().set(k, 0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
-      corner.rate.field().set(k, 0.1 * random.vector(1));
-      u.push_back(corner.u.read()[k]);
-      rate.push_back(corner.rate.read()[k]);
+      u.push_back(0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
+    }
+    keep_areas(corner, u);
+    Vec3 const spin = random.vector(0.1), shift = random.vector(0.1);
+    for (int k = 0; k < 4; ++k) {
+      auto const n = std::size_t(k);
+      rate.push_back(shift + cross(spin, (k > 0 ? corner.arm[n - 1] : Vec3{}) + u[n]));
+      corner.u.field().set(k, u[n]);
+      corner.rate.field().set(k, rate[n]);
     }
     Vec3 const up = (1 / std::sqrt(3.0)) * Vec3{1, 1, 1};
     kernels::WallTable<Host> table{view<std::int32_t>({0}),

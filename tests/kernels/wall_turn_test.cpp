@@ -249,6 +249,26 @@ struct Wall {
   }
 };
 
+// The trailing edge of a section: both faces turn by one angle, and the lower one becomes a tenth longer.
+TEST(WallTurn, OfASharpEdgeIsThatOfItsFacesHoweverTheyStretch) {
+  for (double const wedge : {0.02, 0.1, 0.5})
+    for (double const angle : {0.3, -0.7}) {
+      Wall wall(true);
+      auto const set = [&](std::size_t n, Vec3 const& at) {
+        wall.x.x[n] = at.x;
+        wall.x.y[n] = at.y;
+      };
+      Vec3 const above{-std::cos(wedge), std::sin(wedge), 0}, below{-std::cos(wedge), -std::sin(wedge), 0};
+      set(0, {});
+      set(1, above);
+      set(4, below);
+      auto const turn = matrix_of({0, 0, angle});
+      wall.u[1] = turn * above - above;
+      wall.u[4] = 1.1 * (turn * below) - below;
+      EXPECT_LT(distance(wall.turn_found(), rotation({0, 0, angle})), 1e-13) << wedge << ' ' << angle;
+    }
+}
+
 TEST(WallTurn, OfARigidWallIsItsRotation) {
   for (Vec3 const& turn : {Vec3{0.3, -0.2, 0.5}, Vec3{1.5, 1, -0.4}, Vec3{0, 0, 2.9}, Vec3{1e-7, 0, 0}, Vec3{}}) {
     Wall wall(false);

@@ -133,9 +133,9 @@ TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
     auto const alone = coordinates("single.su2"), together = coordinates(fmt::format("out_{}.su2", step + 1));
     for (Index n = 0; n < alone.size(); ++n) EXPECT_LT(distance(alone[n], together[n]), 1e-6) << step << " " << n;
     double const largest = json["sequence"]["steps"][std::size_t(step)]["largest_displacement"];
-    // On the walls 0.15; what turns with the body further out moves further.
+    // On the walls 0.15; what turns and shears with the body further out moves further.
     EXPECT_GT(largest, std::abs(factor) * 0.14) << step;
-    EXPECT_LT(largest, std::abs(factor) * 0.20) << step;
+    EXPECT_LT(largest, std::abs(factor) * 0.30) << step;
   }
 }
 

@@ -105,6 +105,22 @@ TEST(ColumnHeights, ColumnsOfLinesThatLeanAreEvenInLengthOrInRise) {
   }
 }
 
+// One of them leans: it rises by a hundredth of its length, which must not make it longer than it may be.
+TEST(ColumnHeights, AreNoLongerThanTheyMayBeHoweverTheyLean) {
+  Channel c([](double) { return 5.0; });
+  Index32 const leans = c.at(4, 0);
+  for (std::size_t k = 0; k < c.columns.node.size(); ++k)
+    if (c.columns.root[k] == leans) c.columns.rise[k] *= 0.01;
+  c.columns.full_rise[std::size_t(leans)] *= 0.01;
+  std::vector<double> const most(c.columns.height.size(), infinity);
+  std::vector<double> longest = most;
+  for (double x = 0; x <= 8; ++x) longest[std::size_t(c.at(x, 0))] = 2;
+  ColumnEnds const held = smooth_ends(c.graph, c.columns, most, longest);
+  for (double x = 0; x <= 8; ++x) EXPECT_NEAR(held.height[std::size_t(c.at(x, 0))], 2, 1e-12) << x;
+  Columns const ends = cut(c.columns, held);
+  for (std::size_t k = 0; k < ends.node.size(); ++k) EXPECT_LE(ends.above_wall[k], 2 + 1e-9);
+}
+
 TEST(ColumnHeights, EvenColumnsStayAsTheyAre) {
   Channel const c([](double) { return 4.0; });
   ColumnEnds const even = smooth_ends(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));

@@ -35,6 +35,17 @@ Rule bends(double size, Vec3 const& centre = {3.5, 3.5, 3.5}) {
                         }
                       }};
 }
+/// Turned, and changed in length, thickness and by shear, but for a little.
+Rule stretches(double size, Vec3 const& centre = {3.5, 3.5, 3.5}, double across = 1) {
+  RigidTransform const turn = rotation_about(centre, {0, 0, 1}, 0.5);
+  return FunctionRule{"stretches", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
+                        for (std::size_t n = 0; n < x.size(); ++n) {
+                          Vec3 const p = x[n] - centre;
+                          Vec3 const more{0.4 * p.x + 0.3 * p.y, 0.5 * p.y, across * (0.2 * p.z - 0.1 * p.x)};
+                          u[n] = turn(x[n] + size * (more + Vec3{0.03 * p.y * p.y, 0.2, 0})) - x[n];
+                        }
+                      }};
+}
 PlanOptions with_layers(int n, BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
   PlanOptions options;
   options.elements.cells = 1;  // a coarse background: the stages are the same
@@ -139,6 +150,18 @@ std::vector<Kind> kinds() {
       {"two_bodies", two_bodies, {rule_for({"body"}, bends(0.05))}, {}},
       {"airfoil", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, with_layers(2)},
       {"airfoil_alone", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, {}},
+      {"stretched", box, {rule_for({"body"}, stretches(0.4))}, with_layers(1)},
+      {"stretched_along_a_plane",
+       [] {
+         return box_around({7, 7, 6},
+                           [](Vec3 const& p) { return p.x > 2 && p.x < 5 && p.y > 2 && p.y < 4 && p.z < 3; });
+       },
+       {rule_for({"body"}, stretches(0.4, {3.5, 3, 0}, 0)), rule_for({"k_min"}, SlipRule{})},
+       with_layers(1)},
+      {"stretched_airfoil",
+       [] { return airfoil(48, 3, 0.02, 1.3, 4); },
+       {rule_for({"airfoil"}, stretches(0.5, {0.3, 0, 0}, 0))},
+       {}},
       {"periodic", [] { return periodic_flat_box(8, 5, 2); }, {rule_for({"j_min"}, translation({0, 0.3, 0}))}, {}},
       {"common_motion",
        box,

@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -194,9 +195,10 @@ TEST(Surroundings, AreAnglesOfLines) {
 
 TEST(ShiftShare, FallsFromTheBodyToTheOthersAlmostEvenly) {
   double const way = 40, size = 1, infinite = HUGE_VAL;
+  double moved = 0;
   double share = 0, last = 1;
   auto const at = [&](double d, double others) {
-    shift_shares({&d, 1}, {&size, 1}, others, {&share, 1});
+    shift_shares({&d, 1}, {&size, 1}, {&moved, 1}, others, {&share, 1});
     return share;
   };
   EXPECT_EQ(at(3, infinite), 1) << "nothing else is there";
@@ -209,21 +211,29 @@ TEST(ShiftShare, FallsFromTheBodyToTheOthersAlmostEvenly) {
   }
   EXPECT_EQ(at(0, way), 1);
   EXPECT_EQ(last, 0);
+  // A body that shifts by nine tenths of the way leaves a tenth of what was there, at the worst place.
+  moved = 0.9 * way;
+  last = at(0, way);
+  for (int k = 1; k <= n; ++k) {
+    double const s = at(way * k / n, way - way * k / n);
+    EXPECT_LT(moved * (last - s), way / n);
+    last = s;
+  }
 }
 
 TEST(ShiftShare, OfSeveralBodiesAddUpToOneAtMost) {
   Random random(23);
-  std::array const sizes{1.0, 0.3, 2.0};
+  std::array const sizes{1.0, 0.3, 2.0}, moved{0.0, 0.5, 3.0};
   for (int k = 0; k < 200; ++k) {
     std::array<double, 3> from{}, shares{};
     for (double& d : from) d = std::abs(random.vector(9).x);
     double const others = std::abs(random.vector(9).x);
-    shift_shares(from, sizes, others, shares);
+    shift_shares(from, sizes, moved, others, shares);
     EXPECT_LE(shares[0] + shares[1] + shares[2], 1 + 1e-12);
     for (double const s : shares) EXPECT_GE(s, 0);
     // At a body none of the others'.
     from[1] = 0;
-    shift_shares(from, sizes, others, shares);
+    shift_shares(from, sizes, moved, others, shares);
     EXPECT_EQ(shares, (std::array{0.0, 1.0, 0.0}));
   }
 }
@@ -495,6 +505,114 @@ TEST(TurningBody, DoesNotDependOnNumbers) {
   for (std::size_t n = 0; n < place.size(); ++n)
     largest = std::max(largest, distance(b.x[Index(n)], a.x[Index(place[n])]));
   EXPECT_LT(largest, 1e-11);
+}
+
+// ---- bodies that stretch
+// -------------------------------------------------------------------------------------------------------
+
+/// An airfoil of which all places move by a function of them.
+Motion by_places(std::string const& patch, std::function<Vec3(Vec3 const&)> const& moves) {
+  return motion_of({rule_for({patch}, FunctionRule{"moves", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                                     for (std::size_t n = 0; n < x.size(); ++n) u[n] = moves(x[n]);
+                                                   }})});
+}
+double stretch_share(UnstructuredMorphed const& m) {
+  auto const& limits = m.prepared.plan.turns_of_bodies.limits;
+  return limits.empty() ? 0 : limits.front().share;
+}
+
+TEST(StretchedBody, TakesWhatIsAroundItAlongBeyondItsColumns) {
+  auto const c = c_mesh();
+  // Turned by 20 degrees, half as thick again, a fifth longer.
+  auto const turn = rotation_about({0.4, 0, 0}, {0, 0, 1}, 20 * degrees);
+  auto const whole = [&](Vec3 const& x) { return turn(Vec3{0.4 + 1.2 * (x.x - 0.4), 1.5 * x.y, x.z}); };
+  auto const m = c.morph(by_places("airfoil", [&](Vec3 const& x) { return whole(x) - x; }));
+  EXPECT_EQ(stretch_share(m), 1);
+  EXPECT_EQ(c.largest_miss(m), 0);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  auto const& plan = m.prepared.plan;
+  double largest_end = 0, largest_start = 0;
+  std::vector<double> longest(std::size_t(c.mesh.n_nodes()), 0);
+  for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
+    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
+    longest[std::size_t(w)] = std::max(longest[std::size_t(w)], distance(c.mesh.coordinates[n], c.mesh.coordinates[w]));
+  }
+  for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
+    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
+    double const before = distance(c.mesh.coordinates[n], c.mesh.coordinates[w]),
+                 share = before / longest[std::size_t(w)];
+    if (share == 1) largest_end = std::max(largest_end, distance(m.x[n], whole(c.mesh.coordinates[n])) / before);
+    if (share < 0.05) largest_start = std::max(largest_start, std::abs(distance(m.x[n], m.x[w]) / before - 1));
+  }
+  EXPECT_LT(largest_end, 1e-10) << "columns end where the stretch of the whole puts them";
+  EXPECT_LT(largest_start, 0.02) << "first cells keep their heights";
+}
+
+TEST(StretchedBody, ThatIsRigidOrBendsMostlyIsNone) {
+  auto const c = c_mesh();
+  auto const turn = rotation_about({0.4, 0.3, 0}, {0, 0, 1}, 1.1);
+  EXPECT_EQ(stretch_share(c.morph(by_places("airfoil", [&](Vec3 const& x) { return turn(x) - x; }))), 0);
+  EXPECT_EQ(stretch_share(c.morph(by_places("airfoil",
+                                            [&](Vec3 const& x) {
+                                              double const s = (x.x - 0.4) / 0.2;
+                                              return Vec3{0, x.y > 0 && std::abs(s) < 1 ? 0.02 * (1 - s * s) : 0, 0};
+                                            }))),
+            0);
+}
+
+TEST(StretchedBody, AlongAPlaneKeepsIt) {
+  Case const c(
+      box_around({16, 16, 8}, [](Vec3 const& p) { return std::abs(p.x - 8) < 3 && std::abs(p.y - 8) < 1 && p.z < 4; }));
+  auto const m = c.morph([&] {
+    Motion motion = by_places("body", [](Vec3 const& x) { return Vec3{0.3 * (x.x - 8), 0.5 * (x.y - 8), 0}; });
+    motion.rules.push_back(rule_for({"k_min"}, SlipRule{}));
+    return motion;
+  }());
+  EXPECT_EQ(stretch_share(m), 1);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  double slid = 0;
+  for (Index32 const n : c.nodes_of("k_min")) {
+    EXPECT_NEAR(m.x[n].z, 0, 1e-13);
+    slid = std::max(slid, distance(m.x[n], c.mesh.coordinates[n]));
+  }
+  EXPECT_GT(slid, 0.9);
+}
+
+TEST(StretchedBody, ASphereGrowsToTwiceItsSize) {
+  SphereOptions options;
+  options.elements = 12'000;
+  options.distance = 10;
+  Case const c(make_sphere(options));
+  double const before = c.quality(c.mesh.coordinates)[Measure::minimum_angle_deg].min;
+  for (double const more : {-0.5, 1.0}) {
+    auto const m = c.morph(by_places("sphere", [&](Vec3 const& x) { return more * x; }));
+    EXPECT_EQ(c.inverted(m.x), 0) << more;
+    EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 0.5 * before) << more;
+  }
+}
+
+TEST(StretchedBody, HasTheVelocityOfItsDifferences) {
+  auto const c = c_mesh();
+  auto const places = [](double t) {
+    auto const turn = rotation_about({0.25, 0.1, 0}, {0, 0, 1}, 0.6 + t);
+    return [=](Vec3 const& x) {
+      return turn(x + Vec3{0.2 * (1 + t) * (x.x - 0.4), (0.5 - t) * x.y, 0} + 0.02 * t * Vec3{0, x.x * x.x, 0}) - x;
+    };
+  };
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", places(0)), {});
+  EXPECT_GT(prepared.plan.turns_of_bodies.limits.front().share, 0.9);
+  auto const at = [&](double t) {
+    std::vector<Vec3> out;
+    auto const moves = places(t);
+    for (Index32 const n : prepared.plan.known) {
+      bool const drives = std::binary_search(prepared.plan.driving.begin(), prepared.plan.driving.end(), n);
+      out.push_back(drives ? moves(c.mesh.coordinates[n]) : Vec3{});
+    }
+    return out;
+  };
+  auto const [error, largest] = rate_error(c, prepared.plan, at);
+  EXPECT_GT(largest, 0.2);
+  EXPECT_LT(error, 1e-8 * largest);
 }
 
 TEST(TurningBody, HasTheVelocityOfItsDifferences) {

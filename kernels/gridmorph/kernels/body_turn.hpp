@@ -1,13 +1,15 @@
-// Bodies that move: the rotation and the shift that the walls of each make as a whole, and what they do to every node.
+// Bodies that move: the rotation, the stretch and the shift that the walls of each make as a whole, and what they do to
+// every node.
 //
-//   u(x) += sum over bodies b of (R_b(f_b(x)) - I)(x - c_b) + s_b(x) (t_b - t_0)
+//   u(x) += sum over bodies b of R_b(f_b) (y + f_b E_b y) - y + s_b (t_b - t_0),   y = x - c_b
 //
 // c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the
 // share f of a rotation, t_b the mean displacement of its walls over their area, t_0 that of all other boundaries that
-// are displaced by rules. f_b and s_b are shares planned for each node: 1 on the body and 0 on other boundaries. What
-// walls do beyond that is carried by the rest of a morph; t_0 leaves a motion that all boundaries have in common to it.
-// The mean of rotations, not the rigid motion that fits displacements best: a wing that bends does not pitch, although
-// its swept tip goes up.
+// are displaced by rules, E_b how the body stretches
+// (body_stretch.hpp), nothing unless planned. f_b and s_b are shares
+// planned for each node: 1 on the body and 0 on other boundaries. What walls do beyond that is carried by the rest of a
+// morph; t_0 leaves a motion that all boundaries have in common to it. The mean of rotations, not the rigid motion that
+// fits displacements best: a wing that bends does not pitch, although its swept tip goes up.
 //
 // R_b: the rotation nearest to s = sum of w R_w, w the share of a wall node in the area: the unit quaternion that is
 // the eigenvector of the greatest eigenvalue of a symmetric 4x4 matrix of sums of entries of s (B. K. P. Horn,
@@ -23,13 +25,14 @@
 // angle is f times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half
 // a turn has one axis for all nodes (settled()).
 //
-// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds Q (R_b(f_k) - I)(Q^T
-// (x - t) - c_b) with a share of its own.
+// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds what the body
+// does at Q^T (x - t), turned by Q, with a share of its own.
 //
 // Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each
 // body, 24 of coordinates and 48 of displacements, about 76 flops where the shares are not zero.
 #pragma once
 
+#include <gridmorph/kernels/body_stretch.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/launch.hpp>
@@ -161,6 +164,14 @@ KOKKOS_INLINE_FUNCTION Quaternion<V> quaternion_of_half(V const& r) {
   return {(1 / size) * r, square / (size * (Scalar{1} + size))};
 }
 
+/// The quaternion of the rotation whose half, or a share of it, is h: its square.
+template <class V>
+KOKKOS_INLINE_FUNCTION Quaternion<V> twice(Quaternion<V> const& h) {
+  using Scalar = typename Quaternion<V>::Scalar;
+  Scalar const square = dot(h.imaginary, h.imaginary), double_less = 2 * h.less;
+  return {(Scalar{2} - double_less) * h.imaginary, double_less - h.less * h.less + square};
+}
+
 /// The walls of bodies that turn.
 template <class MemorySpace>
 struct BodyWalls {
@@ -172,6 +183,8 @@ struct BodyWalls {
   Kokkos::View<Index const*, MemorySpace> first_chunk;  ///< of each body, of the others, and the end
   Kokkos::View<Vec3 const*, MemorySpace> axis;          ///< (n_bodies)
   Index n_wall_chunks = 0;                              ///< chunks of bodies
+  Kokkos::View<Vec3 const*, MemorySpace> lever{};       ///< per wall node, of its body's stretch; empty: none stretches
+  Kokkos::View<StretchLimits const*, MemorySpace> limits{};  ///< (n_bodies), where bodies stretch
 };
 
 /// The gradients R - I around the nodes that drive, by their motion; or the rates of these.
@@ -281,6 +294,49 @@ struct ShiftBodies {
   }
 };
 
+/// A quaternion of V from values, and rates where V has them.
+template <class V>
+KOKKOS_INLINE_FUNCTION Quaternion<V> with_rate(Quaternion<Vec3> const* value,
+                                               [[maybe_unused]] Quaternion<Vec3> const* rate, Index n) {
+  if constexpr (has_rate<V>)
+    return {{value[n].imaginary, rate[n].imaginary}, {value[n].less, rate[n].less}};
+  else
+    return value[n];
+}
+
+/// N of a body, from the sums of its chunks.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION StretchMap stretch_moments(BodyWalls<MemorySpace> const& walls, Index body,
+                                                  StretchMap const* sum) {
+  StretchMap s;
+  for (Index c = walls.first_chunk(body); c < walls.first_chunk(body + 1); ++c) s += sum[c];
+  return in_plane(s, walls.axis(body));
+}
+
+/// How each body stretches; with rates the rate of that.
+template <class MemorySpace, class V>
+struct StretchBodies {
+  BodyWalls<MemorySpace> walls;
+  Quaternion<Vec3> const *half, *half_rate;
+  StretchMap const *sum, *sum_rate;
+  StretchMap* stretch;
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
+    StretchMap const n = stretch_moments(walls, b, sum);
+    auto const whole = twice(with_rate<V>(half, half_rate, b));
+    StretchMap out;
+    if constexpr (has_rate<V>) {
+      StretchMap const rate = stretch_moments(walls, b, sum_rate);
+      for (int a = 0; a < 3; ++a)
+        out.column[a] = stretched(walls.limits(b), whole, a, V{n.column[a], rate.column[a]}).rate;
+    } else {
+      for (int a = 0; a < 3; ++a) out.column[a] = stretched(walls.limits(b), whole, a, n.column[a]);
+    }
+    stretch[b] = out;
+  }
+};
+
 /// A body itself, or as it comes again: place and what it does there by x' = rotation x + translation.
 struct BodyImage {
   std::int32_t body;
@@ -288,7 +344,7 @@ struct BodyImage {
   Vec3 translation;
 };
 
-/// What the turns and shifts of all bodies add to a node, and to the motion around a body's walls.
+/// What the turns, stretches and shifts of all bodies add to a node, and turns to the motion around a body's walls.
 template <class MemorySpace, class V>
 struct BodyTurnField {
   Kokkos::View<double const*, MemorySpace> share;        ///< (n_images, n_nodes)
@@ -298,30 +354,38 @@ struct BodyTurnField {
   Quaternion<Vec3> const *half, *half_rate;              ///< (n_bodies)
   Vec3 const *shift, *shift_rate;                        ///< (n_bodies)
   Field<double const> x;
+  StretchMap const *stretch = nullptr, *stretch_rate = nullptr;  ///< (n_bodies); null: none stretches
 
   /// What R y - y is for the share f of body b's rotation.
-  KOKKOS_INLINE_FUNCTION V turned(Index b, double f, Vec3 const& y) const {
-    auto const h = Quaternion<V>::share(of_body(b), f);
-    // The square of (1 - less) + imaginary.
-    using Scalar = typename Quaternion<V>::Scalar;
-    Scalar const square = dot(h.imaginary, h.imaginary), double_less = 2 * h.less;
-    return Quaternion<V>{(Scalar{2} - double_less) * h.imaginary, double_less - h.less * h.less + square}.turned(V{y});
+  KOKKOS_INLINE_FUNCTION V turned(Index b, double f, V const& y) const {
+    return twice(Quaternion<V>::share(with_rate<V>(half, half_rate, b), f)).turned(y);
+  }
+  /// What R E y is for body b.
+  KOKKOS_INLINE_FUNCTION V stretched(Index b, Vec3 const& y) const {
+    V const more = stretched_by(b, y);
+    return more + turned(b, 1, more);
+  }
+  /// What R (y + E y) - y is for the share f of body b's rotation and stretch.
+  KOKKOS_INLINE_FUNCTION V moved(Index b, double f, Vec3 const& y) const {
+    if (stretch == nullptr) return turned(b, f, V{y});
+    V const more = f * stretched_by(b, y);
+    return more + turned(b, f, V{y} + more);
   }
   KOKKOS_INLINE_FUNCTION V operator()(Index n) const {
     V sum{};
     Index const n_bodies = Index(centre.extent(0)), n_nodes = Index(shift_share.extent(0)) / n_bodies;
     for (Index b = 0; b < n_bodies; ++b) {
-      if (double const f = share(b * n_nodes + n); f != 0) sum = sum + turned(b, f, x[n] - centre(b));
+      if (double const f = share(b * n_nodes + n); f != 0) sum = sum + moved(b, f, x[n] - centre(b));
       if (double const s = shift_share(b * n_nodes + n); s != 0) sum = sum + s * shift_of_body(b);
     }
     for (Index k = n_bodies; k < Index(images.extent(0)); ++k)
-      if (double const f = share(k * n_nodes + n); f != 0) sum = sum + turned_by_image(images(k), f, x[n]);
+      if (double const f = share(k * n_nodes + n); f != 0) sum = sum + moved_by_image(images(k), f, x[n]);
     return sum;
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION V turned_by_image(BodyImage const& image, double f, Vec3 const& at) const {
-    V const own = turned(image.body, f, transpose(image.rotation) * (at - image.translation) - centre(image.body));
+  KOKKOS_INLINE_FUNCTION V moved_by_image(BodyImage const& image, double f, Vec3 const& at) const {
+    V const own = moved(image.body, f, transpose(image.rotation) * (at - image.translation) - centre(image.body));
     if constexpr (has_rate<V>)
       return {image.rotation * own.value, image.rotation * own.rate};
     else
@@ -333,15 +397,15 @@ struct BodyTurnField {
     else
       return shift[b];
   }
-  KOKKOS_INLINE_FUNCTION Quaternion<V> of_body(Index b) const {
+  KOKKOS_INLINE_FUNCTION V stretched_by(Index b, Vec3 const& y) const {
     if constexpr (has_rate<V>)
-      return {{half[b].imaginary, half_rate[b].imaginary}, {half[b].less, half_rate[b].less}};
+      return {stretch[b] * y, stretch_rate[b] * y};
     else
-      return half[b];
+      return stretch[b] * y;
   }
 };
 
-/// u(node) loses what the turns of bodies add to it.
+/// u(node) loses what bodies add to it as wholes.
 template <class MemorySpace, class V>
 struct TakeBodyTurns {
   BodyTurnField<MemorySpace, V> field;
@@ -352,25 +416,48 @@ struct TakeBodyTurns {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] = u[node(k)] - written(field(node(k))); }
 };
 
-/// The motion around wall nodes becomes what it is beyond their body's turn, in the places of the baseline.
+/// The columns on wall nodes, and how much of their bodies' stretch they make.
+template <class MemorySpace>
+struct StretchedColumns {
+  Kokkos::View<Index const*, MemorySpace> first;  ///< of wall node r the columns listed from first(r) on; empty: none
+  Kokkos::View<std::int32_t const*, MemorySpace> column;
+  Kokkos::View<std::int32_t const*, MemorySpace> node;  ///< of each column
+  Kokkos::View<Vec3 const*, MemorySpace> arm;           ///< h of each column
+};
+
+/// The motion around wall nodes becomes what it is beyond their body's turn, in the places of the baseline, and where
+/// bodies stretch as much of that as the stretch leaves: G = R_n - R_b becomes (1 - q) G, and the nodes of their
+/// columns, which have lost all that their body does, get (R_b E - q G) h back.
 template <class MemorySpace, class V>
 struct TakeTurnsFromFrames {
   BodyTurnField<MemorySpace, V> field;
   Kokkos::View<std::int32_t const*, MemorySpace> node, body;  ///< per wall node; body -1: none
-  Vec3 const* u;
+  StretchedColumns<MemorySpace> columns;
+  Kokkos::View<StretchLimits const*, MemorySpace> limits;  ///< (n_bodies), where there are such columns
+  Vec3* u;                                                 ///< with rates: their rates
   AffineMotion* frame;
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
     Index const b = body(r);
     if (b < 0) return;
-    frame[r] =
-        frame[r] - AffineMotion{{}, matrix_of_map([&](Vec3 const& e) { return written(field.turned(b, 1, e)); })};
-    frame[r].u = u[node(r)];
+    AffineMotion motion =
+        frame[r] - AffineMotion{{}, matrix_of_map([&](Vec3 const& e) { return written(field.turned(b, 1, V{e})); })};
+    if (columns.first.extent(0) > 0) {
+      double const q = limits(b).share;
+      for (Index k = columns.first(r); k < columns.first(r + 1); ++k) {
+        Index const c = columns.column(k);
+        Vec3 const h = columns.arm(c);
+        u[columns.node(c)] += written(field.stretched(b, h)) - q * (motion.gradient * h);
+      }
+      motion = (1 - q) * motion;
+    }
+    motion.u = u[node(r)];
+    frame[r] = motion;
   }
 };
 
-/// Adds to the displacement of all nodes what the turns and shifts of bodies give them.
+/// Adds to the displacement of all nodes what bodies give them as wholes.
 template <class MemorySpace, class V>
 struct AddBodyTurns {
   BodyTurnField<MemorySpace, V> field;

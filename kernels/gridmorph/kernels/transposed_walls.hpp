@@ -75,6 +75,13 @@ struct SeedMotionsBack {
   }
 };
 
+/// The gradient of the normal after from that of as_long_as(), g.
+KOKKOS_INLINE_FUNCTION Vec3 as_long_as_gradient(Vec3 const& before, Vec3 const& after, Vec3 const& g) {
+  double const square = dot(after, after);
+  if (!(square > 0)) return {};
+  return (norm(before) / norm(after)) * (g - (dot(after, g) / square) * after);
+}
+
 /// Transpose of WallTurn: gradients of the displacements of the nodes around each wall node, at their places in
 /// WallTable::around, and after them all those of the wall nodes themselves.
 template <class MemorySpace>
@@ -107,8 +114,9 @@ struct WallTurnBack {
     FanMoments sums;
     for (Index k = 0; k < n; k += 2) {
       Vec3 const p[2] = {before(k), before(k + 1)}, q[2] = {after(k), after(k + 1)};
-      normal += face_of(p[0], p[1]);
-      moved += face_of(q[0], q[1]);
+      Vec3 const face = face_of(p[0], p[1]);
+      normal += face;
+      moved += as_long_as(face, face_of(q[0], q[1]));
       if (wall.flat) continue;
       for (int m = 0; m < 2; ++m) sums.add(1, p[m], q[m]);
     }
@@ -129,7 +137,8 @@ struct WallTurnBack {
     }
     Vec3 sum;
     for (Index k = 0; k < n; k += 2) {
-      Vec3 const of_face = k == 2 * kept.face ? of_moved + kept.moved : of_moved;
+      Vec3 of_face = as_long_as_gradient(face_before(k / 2), face_after(k / 2), of_moved);
+      if (k == 2 * kept.face) of_face += kept.moved;
       Vec3 const across = cross(wall.across, of_face);
       Vec3 const first_arm = wall.flat ? -across : of_arms.after(before(k)) + cross(after(k + 1), of_face);
       Vec3 const next_arm = wall.flat ? across : of_arms.after(before(k + 1)) + cross(of_face, after(k));
@@ -163,15 +172,17 @@ struct WallTurnBack {
   }
 };
 
-/// The gradient of the quaternion of half a body's rotation, and of its shift.
+/// The gradient of the quaternion of half a body's rotation, of its stretch, and of its shift.
 struct BodyGradient {
   Vec3 imaginary;
   double less = 0;
   Vec3 shift;
+  StretchMap stretch;
   KOKKOS_INLINE_FUNCTION BodyGradient& operator+=(BodyGradient const& g) {
     imaginary += g.imaginary;
     less += g.less;
     shift += g.shift;
+    stretch += g.stretch;
     return *this;
   }
 };
@@ -180,18 +191,30 @@ struct BodyGradient {
 KOKKOS_INLINE_FUNCTION void add_body_turn(Quaternion<Vec3> const& half, double f, Vec3 const& y, Vec3 const& g,
                                           BodyGradient& to) {
   auto const h = Quaternion<Vec3>::share(half, f);
-  Quaternion<Vec3> const whole{(2 - 2 * h.less) * h.imaginary,
-                               2 * h.less - h.less * h.less + dot(h.imaginary, h.imaginary)};
-  TurnedGradient const of = turned_gradient(whole, y, g);
+  TurnedGradient const of = turned_gradient(twice(h), y, g);
   to.imaginary += f * ((2 - 2 * h.less) * of.imaginary + (2 * of.less) * h.imaginary);
   to.less += f * ((2 - 2 * h.less) * of.less - 2 * dot(h.imaginary, of.imaginary));
+}
+
+/// Adds the gradients of body b's rotation and stretch from that of BodyTurnField::moved(), g.
+template <class MemorySpace>
+KOKKOS_INLINE_FUNCTION void add_body_move(BodyTurnField<MemorySpace, Vec3> const& field, Index b, double f,
+                                          Vec3 const& y, Vec3 const& g, BodyGradient& to) {
+  if (field.stretch == nullptr) {
+    add_body_turn(field.half[b], f, y, g, to);
+    return;
+  }
+  add_body_turn(field.half[b], f, y + f * (field.stretch[b] * y), g, to);
+  auto const whole = twice(Quaternion<Vec3>::share(field.half[b], f));
+  Quaternion<Vec3> const back{-whole.imaginary, whole.less};
+  to.stretch.add(f * (g + back.turned(g)), y);
 }
 
 /// Nodes of a part of a list, in chunks of so many.
 constexpr Index body_chunk = 1024;
 KOKKOS_INLINE_FUNCTION constexpr Index body_chunks(Index n) { return (n + body_chunk - 1) / body_chunk; }
 
-/// What the turns and shifts of all bodies give to nodes, handed back to them: parts, (chunks, bodies). node: empty for
+/// What bodies give to nodes as wholes, handed back to them: parts, (chunks, bodies). node: empty for
 /// all of them.
 template <class MemorySpace>
 struct BodyPartsOfNodes {
@@ -213,26 +236,27 @@ struct BodyPartsOfNodes {
       Vec3 const g = sign * u[at];
       for (Index b = 0; b < n_bodies; ++b) {
         if (double const f = field.share(b * n_nodes + at); f != 0)
-          add_body_turn(field.half[b], f, field.x[at] - field.centre(b), g, of[b]);
+          add_body_move(field, b, f, field.x[at] - field.centre(b), g, of[b]);
         if (double const s = field.shift_share(b * n_nodes + at); s != 0) of[b].shift += s * g;
       }
       for (Index m = n_bodies; m < Index(field.images.extent(0)); ++m)
         if (double const f = field.share(m * n_nodes + at); f != 0) {
           BodyImage const& image = field.images(m);
           Mat3 const back = transpose(image.rotation);
-          add_body_turn(field.half[image.body], f, back * (field.x[at] - image.translation) - field.centre(image.body),
+          add_body_move(field, image.body, f, back * (field.x[at] - image.translation) - field.centre(image.body),
                         back * g, of[image.body]);
         }
     }
   }
 };
-/// What the turns and shifts of all bodies give to the motions around wall nodes, handed back to them. These motions
-/// lose what their body does, as TakeTurnsFromFrames has it.
+/// What bodies take off the motions around wall nodes, handed back to them: transpose of TakeTurnsFromFrames.
 template <class MemorySpace>
 struct BodyPartsOfFrames {
-  Quaternion<Vec3> const* half;
+  BodyTurnField<MemorySpace, Vec3> field;
   Index n_bodies;
   Kokkos::View<std::int32_t const*, MemorySpace> node, body;
+  StretchedColumns<MemorySpace> columns;
+  Kokkos::View<StretchLimits const*, MemorySpace> limits;
   Vec3* u;
   AffineMotion* frame;
   BodyGradient* parts;
@@ -247,8 +271,28 @@ struct BodyPartsOfFrames {
       if (b < 0) continue;
       u[node(r)] += frame[r].u;
       frame[r].u = {};
-      for (int j = 0; j < 3; ++j) add_body_turn(half[b], 1, unit_vector(j), -column_of(frame[r].gradient, j), of[b]);
+      if (columns.first.extent(0) > 0) columns_back(r, b, of[b]);
+      for (int j = 0; j < 3; ++j)
+        add_body_turn(field.half[b], 1, unit_vector(j), -column_of(frame[r].gradient, j), of[b]);
     }
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void columns_back(Index r, Index b, BodyGradient& of) const {
+    double const q = limits(b).share;
+    AffineMotion motion = (1 - q) * frame[r];
+    auto const whole = twice(field.half[b]);
+    Quaternion<Vec3> const back{-whole.imaginary, whole.less};
+    for (Index k = columns.first(r); k < columns.first(r + 1); ++k) {
+      Index const column = columns.column(k);
+      Vec3 const h = columns.arm(column), g = u[columns.node(column)];
+      add_body_turn(field.half[b], 1, field.stretch[b] * h, g, of);
+      of.stretch.add(g + back.turned(g), h);
+      double const arm[3] = {-q * h.x, -q * h.y, -q * h.z}, value[3] = {g.x, g.y, g.z};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) motion.gradient.m[i][j] += value[i] * arm[j];
+    }
+    frame[r] = motion;
   }
 };
 /// The sum of the parts of each body, which is an item.
@@ -260,6 +304,33 @@ struct BodySums {
     BodyGradient s = sum[b];
     for (Index c = 0; c < n_chunks; ++c) s += parts[c * n_bodies + b];
     sum[b] = s;
+  }
+};
+
+/// Transpose of StretchBodies: gradients of how bodies stretch become those of N, and what they are of the rotation is
+/// added to its own.
+template <class MemorySpace>
+struct StretchBodiesBack {
+  BodyWalls<MemorySpace> walls;
+  Quaternion<Vec3> const* half;
+  StretchMap const* sum;
+  BodyGradient* of;
+
+  [[nodiscard]] Index size() const { return Index(walls.axis.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index b) const {
+    StretchMap const n = stretch_moments(walls, b, sum);
+    StretchLimits const& limits = walls.limits(b);
+    auto const whole = twice(half[b]);
+    BodyGradient to = of[b];
+    for (int a = 0; a < 3; ++a) {
+      Vec3 const g = limits.share * to.stretch.column[a];
+      Vec3 const own{limits.span.m[0][a], limits.span.m[1][a], limits.span.m[2][a]};
+      // g . R^T v is R g . v.
+      add_body_turn(half[b], 1, g, own + n.column[a], to);
+      to.stretch.column[a] = g + whole.turned(g);
+    }
+    to.stretch = in_plane(to.stretch, walls.axis(b));
+    of[b] = to;
   }
 };
 
@@ -285,8 +356,8 @@ struct TurnBodiesBack {
       }
   }
 };
-/// Transposes of SumBodyWalls and SumBodyShifts: to the motions around wall nodes, and listed as `slot` is. Item: a
-/// chunk.
+/// Transposes of SumBodyWalls, SumBodyShifts and SumBodyStretches: to the motions around wall nodes, and listed as
+/// `slot` is. Item: a chunk.
 template <class MemorySpace>
 struct BodyWallsBack {
   BodyWalls<MemorySpace> walls;
@@ -308,6 +379,7 @@ struct BodyWallsBack {
     for (Index k = walls.first(c); k < walls.first(c + 1); ++k) {
       listed[k] = walls.weight(k) * shift;
       if (b == n_bodies) continue;
+      if (walls.lever.extent(0) > 0) listed[k] += of[b].stretch * walls.lever(k);
       Mat3& g = frame[walls.wall(k)].gradient;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) g.m[j][i] += walls.weight(k) * moments[b].m[i][j];

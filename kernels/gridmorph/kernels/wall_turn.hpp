@@ -5,7 +5,9 @@
 //
 //   n = sum over faces of (a - x) x (b - x)      (2-D: over edges of (b - a) x plane normal)
 //
-// then about the normal the polar rotation of the gradient F in the wall, least squares over the nodes around,
+// after: of these, each as long as it is before. (At a sharp edge both faces nearly cancel, and how differently they
+// stretch as the edge bends would turn what is left of them.) About the normal it turns by what is left,
+// the polar rotation of the gradient F in the wall, least squares over the nodes around,
 //
 //   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1
 //
@@ -86,6 +88,14 @@ KOKKOS_INLINE_FUNCTION V twist_about(V const& axis, V const& swing, Index n, Bef
   return quarter_tangent(f21 - f12, f11 + f22) * axis;
 }
 
+/// A face's normal after, as long as it is before.
+template <class V>
+KOKKOS_INLINE_FUNCTION V as_long_as(V const& before, V const& after) {
+  auto const size = norm(after);
+  if (!(size > 0)) return V{};
+  return (norm(before) / size) * after;
+}
+
 /// Position of a node: of the baseline, or moved by what it is displaced by so far.
 template <class V>
 struct Positions {
@@ -125,6 +135,14 @@ struct WallTable {
     V const x = at[node(r)];
     V sum{};
     for (Index k = first(r); k < first(r + 1); k += 2) sum = sum + face(k, x, at);
+    return sum;
+  }
+  /// That of the faces after, each as long as before.
+  template <class V>
+  KOKKOS_INLINE_FUNCTION V normal_after(Index r, Positions<V> const& baseline, Positions<V> const& moved) const {
+    V const x = baseline[node(r)], y = moved[node(r)];
+    V sum{};
+    for (Index k = first(r); k < first(r + 1); k += 2) sum = sum + as_long_as(face(k, x, baseline), face(k, y, moved));
     return sum;
   }
 };
@@ -167,7 +185,7 @@ struct WallTurn {
   }
 
   KOKKOS_INLINE_FUNCTION V turn_of_faces(Index r) const {
-    V const after = wall.normal(r, moved);
+    V const after = wall.normal_after(r, baseline, moved);
     V const before = wall.normal(r, baseline);
     if (wall.flat) return settled(turn_between(before, after, wall.across));
     V const swing = turn_between(before, after);

@@ -121,9 +121,13 @@ void MorphPlan::State::plan_elements(HostInstance const& host, Mesh const& mesh,
   if (series.steps > 0) {  // the offset of the wrap reckons with all steps, of very many with some
     constexpr int most = 1000;
     options.elements.motion = 0;
-    for (int const step : some_steps(series.steps, most))
-      options.elements.motion =
-          std::max(options.elements.motion, largest_norm(evaluate(boundary, series.motion(step))));
+    for (int const step : some_steps(series.steps, most)) {
+      auto displacement = evaluate(boundary, series.motion(step));
+      double const largest = largest_norm(displacement);
+      if (!(largest > options.elements.motion)) continue;
+      options.elements.motion = largest;
+      options.elements.shape = std::move(displacement);
+    }
   }
   double const conditions = watch.lap();
   elements = prepare(host, mesh, topology, face_patches, std::move(graph), std::move(boundary), options);

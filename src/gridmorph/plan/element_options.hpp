@@ -2,6 +2,8 @@
 // defaults.
 #pragma once
 
+#include <gridmorph/kernels/vec3.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +35,9 @@ struct ElementOptions {
   double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
   double motion =
       -1;  ///< size of the displacements to come [length], for suggest_offset(); negative: what the rules give now
+  /// A displacement of the boundary nodes (BoundaryConditions::known) like which those to come bend and stretch walls,
+  /// by another factor; empty: not known. Not looked at where the displacement is.
+  std::vector<Vec3> shape;
   /// Cells of the wrap's lattice along the longest extent of the walls; few are best (WrapOptions::resolution).
   int resolution = 4;
   bool tube = false;  ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)

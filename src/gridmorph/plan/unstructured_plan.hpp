@@ -32,8 +32,8 @@ struct ColumnPlan {
   std::vector<float> turn;  ///< share of the wall's rotation that the node makes: 0 translate, 1 rotate, between: blend
 };
 
-/// Bodies: walls that touch, that move and may turn and shift as a whole. kernels/body_turn.hpp has what becomes of
-/// them.
+/// Bodies: walls that touch, that move and may turn, stretch and shift as a whole. kernels/body_turn.hpp has what
+/// becomes of them.
 struct TurningBodies {
   std::vector<Vec3> centre;   ///< per body: mean place of its walls
   std::vector<Vec3> axis;     ///< per body: the one axis about which it may turn, unit; zero: any
@@ -42,8 +42,13 @@ struct TurningBodies {
   /// body, or of the others.
   std::vector<Index32> slot;
   std::vector<double> weight;
-  std::vector<Index> first;              ///< first of `slot` in each chunk, and the end
-  std::vector<Index> first_chunk;        ///< of each body, of the others, and the end
+  /// Per wall node and body: what the stretch of bodies is summed by (kernels/body_stretch.hpp); empty where none
+  /// stretches.
+  std::vector<Vec3> lever;
+  std::vector<kernels::StretchLimits> limits;
+  std::vector<Vec3> column_arm;    ///< (UnstructuredPlan::columns) h of kernels/body_stretch.hpp, where bodies stretch
+  std::vector<Index> first;        ///< first of `slot` in each chunk, and the end
+  std::vector<Index> first_chunk;  ///< of each body, of the others, and the end
   std::vector<Index32> body_of_driving;  ///< (UnstructuredPlan::driving) -1: none
   std::vector<Index32> rigid;            ///< nodes of the bodies' walls and of the columns on them
   std::vector<kernels::BodyImage>

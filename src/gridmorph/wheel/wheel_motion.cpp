@@ -133,6 +133,7 @@ std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, Pla
   for (int step = 0; step < asked.times.steps; ++step)
     for (auto const& values : values_of(asked.times.motions(step))) largest = std::max(largest, largest_norm(values));
   options.elements.motion = largest;  // what turns leave of it differs from blade to blade
+  if (most) options.elements.shape = std::move(*most);
   return {};
 }
 

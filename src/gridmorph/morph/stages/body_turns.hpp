@@ -1,11 +1,12 @@
-// Bodies that turn and shift, in an unstructured morph: after the walls what each does as a whole is taken off what
-// they and their columns do, so that all stages up to the far field carry what is left (bending, say); then every node
-// gets its share of the turns and shifts.
+// Bodies that turn, stretch and shift, in an unstructured morph: after the walls what each does as a whole is taken off
+// what they and their columns do, so that all stages up to the far field carry what is left (bending, say); then every
+// node gets its share of that.
 #pragma once
 
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/kernels/transposed_walls.hpp>
+#include <gridmorph/morph/stages/columns_of_walls.hpp>
 #include <gridmorph/morph/stages/stage_field.hpp>
 #include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
@@ -28,6 +29,8 @@ struct BodyTurnTables {
   List<Exec, kernels::VectorMoments> sum, sum_rate;
   List<Exec, kernels::Quaternion<Vec3>> half, half_rate;
   List<Exec, Vec3> shift_sum, shift, shift_rate;
+  List<Exec, kernels::StretchMap> stretch_sum, stretch_sum_rate, stretch, stretch_rate;  ///< empty: none stretches
+  kernels::StretchedColumns<Memory> columns;
   // Of transposes.
   List<Exec, kernels::BodyGradient> parts, gradient;
   List<Exec, kernels::VectorMoments> moments;
@@ -45,7 +48,9 @@ struct BodyTurnTables {
               upload(exec, plan.turns_of_bodies.first, name("first")),
               upload(exec, plan.turns_of_bodies.first_chunk, name("first_chunk")),
               upload(exec, plan.turns_of_bodies.axis, name("axis")),
-              plan.turns_of_bodies.first_chunk[std::size_t(plan.turns_of_bodies.size())]},
+              plan.turns_of_bodies.first_chunk[std::size_t(plan.turns_of_bodies.size())],
+              upload(exec, plan.turns_of_bodies.lever, name("lever")),
+              upload(exec, plan.turns_of_bodies.limits, name("limits"))},
         share(upload(exec, plan.turns_of_bodies.share, name("share"))),
         shift_share(upload(exec, plan.turns_of_bodies.shift_share, name("shift_share"))),
         images(upload(exec, plan.turns_of_bodies.images, name("images"))),
@@ -57,6 +62,17 @@ struct BodyTurnTables {
         shift_sum(room_for<Vec3>(exec, walls.first.extent(0) - 1, name("shift_sum"))),
         shift(room_for<Vec3>(exec, centre.extent(0), name("shift"))),
         shift_rate(room_for<Vec3>(exec, with_rate ? centre.extent(0) : 0, name("shift_rate"))) {
+    if (stretches()) {
+      stretch_sum = room_for<kernels::StretchMap>(exec, std::size_t(walls.n_wall_chunks), name("stretch_sum"));
+      stretch = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch"));
+      auto const of_walls = columns_of_walls(exec, plan);
+      columns = {of_walls.first, of_walls.column, upload(exec, plan.columns.node, name("columns")),
+                 upload(exec, plan.turns_of_bodies.column_arm, name("column_arm"))};
+      if (with_rate) {
+        stretch_sum_rate = room_for<kernels::StretchMap>(exec, stretch_sum.extent(0), name("stretch_sum_rate"));
+        stretch_rate = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch_rate"));
+      }
+    }
     if (!back) return;
     std::size_t const n_bodies = centre.extent(0);
     parts = room_for<kernels::BodyGradient>(exec, n_bodies * std::size_t(kernels::body_chunks(plan.n_nodes)),
@@ -66,6 +82,8 @@ struct BodyTurnTables {
     listed = room_for<Vec3>(exec, plan.turns_of_bodies.slot.size(), name("listed"));
     of_slots = transposed(exec, plan.turns_of_bodies.slot, nullptr, name("of_slots"));
   }
+
+  [[nodiscard]] bool stretches() const { return walls.lever.extent(0) > 0; }
 
   /// gradient += what chunks of nodes or frames have left in `parts`.
   void sum_parts(Exec const& exec, Index n_chunks) const {
@@ -83,7 +101,8 @@ struct BodyTurnTables {
 
   template <class V>
   [[nodiscard]] kernels::BodyTurnField<Memory, V> field(Baseline const& x) const {
-    return {share, shift_share, images, centre, half.data(), half_rate.data(), shift.data(), shift_rate.data(), x};
+    return {share,        shift_share,       images, centre,         half.data(),        half_rate.data(),
+            shift.data(), shift_rate.data(), x,      stretch.data(), stretch_rate.data()};
   }
   [[nodiscard]] List<Exec, Index32 const> wall_slots() const {
     return Kokkos::subview(walls.slot, std::pair<std::size_t, std::size_t>(0, walls.wall.extent(0)));
@@ -105,8 +124,7 @@ class TakeTurns {
   explicit TakeTurns(SharedBodyTurns<Exec> tables) : tables_(std::move(tables)) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
-    sum(exec, f, tables_->sum);
-    turn<Vec3>(exec, tables_->half);
+    keep(exec, x, f);
     shift(exec, f, tables_->shift);
     take<Vec3>(exec, x, f);
   }
@@ -116,6 +134,7 @@ class TakeTurns {
     enqueue(exec, x, f);
     sum(exec, r, tables_->sum_rate);
     turn<kernels::DualVec3>(exec, tables_->half_rate);
+    stretch<kernels::DualVec3>(exec, r, tables_->stretch_sum_rate, tables_->stretch_rate);
     shift(exec, r, tables_->shift_rate);
     take<kernels::DualVec3>(exec, x, r);
   }
@@ -124,17 +143,27 @@ class TakeTurns {
   void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
     sum(exec, f, tables_->sum);
     turn<Vec3>(exec, tables_->half);
+    stretch<Vec3>(exec, f, tables_->stretch_sum, tables_->stretch);
   }
   /// Adds to what the transpose of AddTurns has left.
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     using kernels::launch;
     auto const& t = *tables_;
-    kernels::BodyPartsOfFrames<Memory> const frames{
-        t.half.data(), Index(t.centre.extent(0)), t.driving,     t.body_of_driving,
-        g.u.data(),    g.frames.data(),           t.parts.data()};
+    kernels::BodyPartsOfFrames<Memory> const frames{t.template field<Vec3>(x),
+                                                    Index(t.centre.extent(0)),
+                                                    t.driving,
+                                                    t.body_of_driving,
+                                                    t.columns,
+                                                    t.walls.limits,
+                                                    g.u.data(),
+                                                    g.frames.data(),
+                                                    t.parts.data()};
     launch("gridmorph::transposed::bodies::frames", exec, frames);
     t.sum_parts(exec, frames.size());
     if (t.rigid.extent(0) > 0) t.sum_nodes(exec, x, t.rigid, Index(t.rigid.extent(0)), -1, g);
+    if (t.stretches())
+      launch("gridmorph::transposed::bodies::stretch", exec,
+             kernels::StretchBodiesBack<Memory>{t.walls, t.half.data(), t.stretch_sum.data(), t.gradient.data()});
     launch("gridmorph::transposed::bodies::turn", exec,
            kernels::TurnBodiesBack<Memory>{t.walls, t.sum.data(), t.gradient.data(), t.moments.data()});
     launch(
@@ -157,6 +186,18 @@ class TakeTurns {
         "gridmorph::bodies::turn", exec,
         kernels::TurnBodies<Memory, V>{tables_->walls, tables_->sum.data(), tables_->sum_rate.data(), to.data()});
   }
+  template <class V>
+  void stretch(Exec const& exec, StageField<Exec> const& f, List<Exec, kernels::StretchMap> const& moments,
+               List<Exec, kernels::StretchMap> const& to) const {
+    auto const& t = *tables_;
+    if (!t.stretches()) return;
+    kernels::launch("gridmorph::bodies::sum_stretches", exec,
+                    kernels::SumBodyStretches<Memory>{t.walls.slot, t.walls.lever, t.walls.first, t.walls.n_wall_chunks,
+                                                      f.boundary, moments.data()});
+    kernels::launch("gridmorph::bodies::stretch", exec,
+                    kernels::StretchBodies<Memory, V>{t.walls, t.half.data(), t.half_rate.data(), t.stretch_sum.data(),
+                                                      t.stretch_sum_rate.data(), to.data()});
+  }
   /// Linear: rates as well.
   void shift(Exec const& exec, StageField<Exec> const& f, List<Exec, Vec3> const& to) const {
     kernels::launch("gridmorph::bodies::sum_shifts", exec,
@@ -169,9 +210,10 @@ class TakeTurns {
     auto const field = tables_->template field<V>(x);
     kernels::launch("gridmorph::bodies::take", exec,
                     kernels::TakeBodyTurns<Memory, V>{field, tables_->rigid, f.u.data()});
-    kernels::launch("gridmorph::bodies::frames", exec,
-                    kernels::TakeTurnsFromFrames<Memory, V>{field, tables_->driving, tables_->body_of_driving,
-                                                            f.u.data(), f.frames.data()});
+    kernels::launch(
+        "gridmorph::bodies::frames", exec,
+        kernels::TakeTurnsFromFrames<Memory, V>{field, tables_->driving, tables_->body_of_driving, tables_->columns,
+                                                tables_->walls.limits, f.u.data(), f.frames.data()});
   }
 
   SharedBodyTurns<Exec> tables_;

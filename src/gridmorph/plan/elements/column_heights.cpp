@@ -56,14 +56,22 @@ std::vector<double> smooth(NodeGraph const& graph, std::vector<double> const& wh
 
 }  // namespace
 
-ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most) {
+ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most,
+                       std::vector<double> const& longest) {
   ColumnEnds out{smooth(graph, columns.height, most), smooth(graph, columns.full_rise, most)};
+  auto const shorten = [&](std::size_t n, double share, ColumnEnds const& of) {
+    out.height[n] = share * of.height[n];
+    out.rise[n] = share * of.rise[n];
+  };
+  ColumnEnds const whole{columns.height, columns.full_rise};
   for (std::size_t n = 0; n < out.height.size(); ++n)
-    if (columns.height[n] > 0 && columns.full_rise[n] > 0) {
-      double const share = std::max(out.height[n] / columns.height[n], out.rise[n] / columns.full_rise[n]);
-      out.height[n] = share * columns.height[n];
-      out.rise[n] = share * columns.full_rise[n];
-    }
+    if (columns.height[n] > 0 && columns.full_rise[n] > 0)
+      shorten(n, std::max(out.height[n] / columns.height[n], out.rise[n] / columns.full_rise[n]), whole);
+  if (longest.empty()) return out;
+  auto const held = smooth(graph, out.height, longest);
+  ColumnEnds const before = out;
+  for (std::size_t n = 0; n < held.size(); ++n)
+    if (before.height[n] > held[n]) shorten(n, held[n] / before.height[n], before);
   return out;
 }
 

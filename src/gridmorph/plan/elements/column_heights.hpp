@@ -25,12 +25,13 @@ struct ColumnEnds {
   std::vector<double> rise;    ///< (n_nodes) as Columns::full_rise
 };
 
-/// The ends of columns, not above `most`, and without the jumps between neighbours whose columns end in different
-/// layers. What varies with the share of the height, and what begins at its end, must not jump. First the least of the
-/// neighbours, so that columns are hardly ever longer. Neither lengths nor rises would do alone, so a column ends where
-/// the higher of both asks for it: beside the edge of a blade lines may lean by 80 degrees, and columns rise like their
-/// neighbours and are six times as long. Cost O(wall nodes).
-ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most);
+/// The ends of columns, not above `most`, no longer than `longest` where that is given, and without the jumps between
+/// neighbours whose columns end in different layers. What varies with the share of the height, and what begins at its
+/// end, must not jump. First the least of the neighbours, so that columns are hardly ever longer. Neither lengths nor
+/// rises would do alone, so a column ends where the higher of both asks for it: beside the edge of a blade lines may
+/// lean by 80 degrees, and columns rise like their neighbours and are six times as long. Cost O(wall nodes).
+ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most,
+                       std::vector<double> const& longest = {});
 
 /// Columns up to their ends; what is above belongs to the layers.
 Columns cut(Columns const& columns, ColumnEnds const& ends);

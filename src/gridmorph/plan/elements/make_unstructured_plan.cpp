@@ -295,8 +295,10 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
   if (displacement)
     for (Vec3& u : *displacement) u = along_axes(axes, u);
   for (Mat3& rotation : boundary.rotations) rotation = along_axes(axes, rotation);
-  auto out = detail::UnstructuredPlanner(host, seen, topology, face_patches, std::move(graph), std::move(boundary),
-                                         options, std::move(displacement), axes)
+  PlanOptions own = options;
+  for (Vec3& u : own.elements.shape) u = along_axes(axes, u);
+  auto out = detail::UnstructuredPlanner(host, seen, topology, face_patches, std::move(graph), std::move(boundary), own,
+                                         std::move(displacement), axes)
                  .run();
   out.boundary.rotations = std::move(rotations);
   out.displacement = std::move(given);

@@ -1,5 +1,6 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/plan/elements/column_heights.hpp>
 #include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -77,7 +78,7 @@ void UnstructuredPlanner::find_columns() {
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
   find_wall_lines();
   out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
-  columns_ = cut(columns_, smooth_ends(out_.graph, columns_, most_heights()));
+  columns_ = cut(columns_, smooth_ends(out_.graph, columns_, most_heights(), longest_where_walls_bend()));
   for (double const h : columns_.full_rise) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
   if (!driving_faces_.empty()) find_held_columns();
@@ -146,6 +147,51 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
         l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
       for (Index32 const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
   return most;
+}
+
+std::vector<double> UnstructuredPlanner::longest_where_walls_bend() const {
+  auto const* const given = shape();
+  TurningBodies const& all = out_.plan.turns_of_bodies;
+  if (given == nullptr || all.size() == 0) return {};
+  for (Index32 const f : driving_faces_)
+    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
+        l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
+      return {};
+  // By measurement on an airfoil and an ellipsoid (bench_turns): what lattices show of a bend in the plane they show
+  // better than columns do, in space, where they are coarser, no better.
+  constexpr double strain = 0.03;
+  double const cells = mesh_.dimension == 2 ? 1 : 4;
+  auto const turn = turns_of_walls(*given);
+  auto const place = places_of_nodes(out_.plan.driving, mesh_.n_nodes());
+  std::vector<double> longest(std::size_t(mesh_.n_nodes()), infinity);
+  for (std::size_t body = 0; body < wall_bodies_.bodies.size(); ++body) {
+    double const bends = (1 - (all.limits.empty() ? 0 : all.limits[body].share)) * body_sizes_[body];
+    if (!(body_rests_[body] > 0 && bends > 0)) continue;
+    double const least = cells * lattice_spacing(wall_bodies_.bodies[body]);
+    for (Index32 const f : wall_bodies_.bodies[body].faces) {
+      auto const face = topology_.boundary.nodes[f];
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        Index32 const ends[2] = {owner(face[k]), owner(face[(k + 1) % face.size()])};
+        double const angle = 2 * norm(turn[std::size_t(place[std::size_t(ends[0])])].imaginary -
+                                      turn[std::size_t(place[std::size_t(ends[1])])].imaginary);
+        if (!(angle > 0)) continue;
+        double const length = strain * body_rests_[body] / bends *
+                              distance(mesh_.coordinates[ends[0]], mesh_.coordinates[ends[1]]) / angle;
+        for (Index32 const n : ends)
+          longest[std::size_t(n)] = std::min(longest[std::size_t(n)], std::max(length, least));
+      }
+    }
+  }
+  return longest;
+}
+
+double UnstructuredPlanner::lattice_spacing(WallBody const& body) const {
+  Box box;
+  for (Index32 const n : body.nodes) box.include(mesh_.coordinates[n]);
+  Vec3 const extent = box.high - box.low;
+  double const beside = 0.5 * norm(extent);
+  double const room = (extent.x + beside) * (extent.y + beside) * (mesh_.dimension == 2 ? 1 : extent.z + beside);
+  return std::pow(room / double(most_lattice_nodes), 1.0 / mesh_.dimension);
 }
 
 std::vector<BoundaryLayer::Mode> UnstructuredPlanner::modes_of_walls() const {

@@ -89,7 +89,16 @@ std::function<double(Index32, Index32)> UnstructuredPlanner::layer_weight() {
   return [](Index32, Index32) { return 1.0; };
 }
 
+void UnstructuredPlanner::measure_columns() {
+  column_reach_ = columns_.full_rise;
+  for (Index32 const n : columns_.node)
+    if (Index32 const wall = from_wall_.source[std::size_t(n)]; wall >= 0)
+      column_reach_[std::size_t(wall)] =
+          std::max(column_reach_[std::size_t(wall)], from_wall_.distance[std::size_t(n)]);
+}
+
 void UnstructuredPlanner::plan_layers() {
+  measure_columns();
   UnstructuredPlan& plan = out_.plan;
   Mask seeds = drives_;
   for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
@@ -129,7 +138,7 @@ void UnstructuredPlanner::plan_smooth_walls() {
   std::vector<Index32> sources = plan.driving;
   for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[std::size_t(s)]);
   plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
-                                    box.high, 100'000, fine_opening);
+                                    box.high, most_lattice_nodes, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
@@ -184,7 +193,7 @@ void UnstructuredPlanner::plan_layer_turns() {
 
 double UnstructuredPlanner::beyond_column(std::size_t n) const {
   Index32 const wall = from_wall_.source[n];
-  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - columns_.full_rise[std::size_t(wall)]);
+  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - column_reach_[std::size_t(wall)]);
 }
 
 }  // namespace gridmorph::detail

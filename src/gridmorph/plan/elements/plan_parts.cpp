@@ -172,22 +172,26 @@ void UnstructuredPlanner::plan_part(Part part) {
     to.slots = taken->slots;
     if (to.common) order_as(to.slots, *to.common);
   }
-  std::optional<std::vector<Vec3>> rest;
-  if (out_.displacement) {
-    rest.emplace();
-    for (Index32 const s : to.slots) rest->push_back((*out_.displacement)[std::size_t(s)]);
+  auto const rest_of = [&](std::vector<Vec3> const& displacement) {
+    std::vector<Vec3> rest;
+    for (Index32 const s : to.slots) rest.push_back(displacement[std::size_t(s)]);
     if (to.common) {
-      auto const move = kernels::common_move(to.common->frame, to.common->fit(*rest), true);
-      for (std::size_t k = 0; k < rest->size(); ++k)
-        kernels::TakeCommonMotion<Kokkos::HostSpace>{to.common->frame, to.common->view(), &move, rest->data(),
-                                                     rest->data()}(Index(k));
+      auto const move = kernels::common_move(to.common->frame, to.common->fit(rest), true);
+      for (std::size_t k = 0; k < rest.size(); ++k)
+        kernels::TakeCommonMotion<Kokkos::HostSpace>{to.common->frame, to.common->view(), &move, rest.data(),
+                                                     rest.data()}(Index(k));
     }
-  }
+    return rest;
+  };
+  std::optional<std::vector<Vec3>> rest;
+  if (out_.displacement) rest = rest_of(*out_.displacement);
+  PlanOptions options = options_;
+  if (!options_.elements.shape.empty()) options.elements.shape = rest_of(options_.elements.shape);
   BoundaryConditions boundary = taken ? std::move(taken->boundary) : out_.boundary;
   boundary.notes.clear();  // they are here already
   UnstructuredPlanner planner(host_, taken ? taken->mesh : mesh_, taken ? taken->topology : topology_,
                               taken ? taken->face_patches : face_patches_, taken ? std::move(taken->graph) : out_.graph,
-                              std::move(boundary), options_, std::move(rest), out_.plan.axes);
+                              std::move(boundary), options, std::move(rest), out_.plan.axes);
   planner.is_part_ = true;
   PreparedUnstructured planned = planner.run();
   for (auto& note : planned.notes)

@@ -1,5 +1,7 @@
 #include <gridmorph/core/for_all.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/plan/elements/body_stretch.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
@@ -60,7 +62,7 @@ void UnstructuredPlanner::find_turning_bodies() {
   for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
   if (wall_bodies_.bodies.empty()) return;
   add_other_boundaries();
-  if (out_.displacement) std::tie(reach_, rest_reach_) = reach_beyond_turns();
+  plan_stretches();
 }
 
 void UnstructuredPlanner::add_turning_body(WallBody const& body) {
@@ -85,6 +87,8 @@ void UnstructuredPlanner::add_turning_body(WallBody const& body) {
   }
   all.first_chunk.push_back(Index(all.first.size()));
   body_sizes_.push_back(size);
+  body_shifts_.push_back(0);
+  body_rests_.push_back(0);
   all.centre.push_back(centre);
   all.axis.push_back(body.axis);
 }
@@ -109,12 +113,17 @@ void UnstructuredPlanner::add_other_boundaries() {
   all.first.push_back(Index(all.slot.size()));
 }
 
-std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
+std::vector<Vec3> const* UnstructuredPlanner::shape() const {
+  if (out_.displacement) return &*out_.displacement;
+  return options_.elements.shape.empty() ? nullptr : &options_.elements.shape;
+}
+
+std::vector<kernels::Quaternion<Vec3>> UnstructuredPlanner::turns_of_walls(
+    std::vector<Vec3> const& displacement) const {
   using Host = Kokkos::HostSpace;
   UnstructuredPlan const& plan = out_.plan;
-  TurningBodies const& all = plan.turns_of_bodies;
   std::vector<Vec3> u(std::size_t(mesh_.n_nodes()));
-  for (std::size_t k = 0; k < plan.known.size(); ++k) u[std::size_t(plan.known[k])] = (*out_.displacement)[k];
+  for (std::size_t k = 0; k < plan.known.size(); ++k) u[std::size_t(plan.known[k])] = displacement[k];
   auto const view = [](auto const& list) {
     using T = typename std::decay_t<decltype(list)>::value_type;
     return Kokkos::View<T const*, Host>(list.data(), list.size());
@@ -132,36 +141,94 @@ std::pair<double, double> UnstructuredPlanner::reach_beyond_turns() const {
   std::vector<Vec3> turn(plan.driving.size());
   kernels::WallTurn<Host, Vec3> const turns{walls, {x}, {x, u.data()}, turn.data()};
   for_all(host_, "gridmorph::wall_turn", Index(turn.size()), [&](Index r) { turns(r); });
+  std::vector<kernels::Quaternion<Vec3>> out;
+  for (Vec3 const& t : turn) out.push_back(kernels::quaternion_of(t));
+  return out;
+}
+
+void UnstructuredPlanner::plan_stretches() {
+  auto const* const given = shape();
+  if (given == nullptr) return;
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  auto const turn = turns_of_walls(*given);
   // A body's shift is what it moves by beyond the mean of all other boundaries.
   Vec3 shift_of_others;
   for (std::size_t k = all.wall.size(); k < all.slot.size(); ++k)
-    shift_of_others += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
-  auto rest = u;
-  std::size_t k = 0;
+    shift_of_others += all.weight[k] * (*given)[std::size_t(all.slot[k])];
+  double reach = 0, rest_reach = 0;
+  Mask of_body(given->size(), 0);
+  std::size_t first = 0;
   for (std::size_t b = 0; b < wall_bodies_.bodies.size(); ++b) {
-    std::size_t const first = k, end = k + wall_bodies_.bodies[b].nodes.size();
-    kernels::VectorMoments s;
+    std::size_t const end = first + wall_bodies_.bodies[b].nodes.size();
     Vec3 shift;
-    for (; k < end; ++k) {
-      shift += all.weight[k] * (*out_.displacement)[std::size_t(all.slot[k])];
-      auto const q = kernels::quaternion_of(turn[std::size_t(all.wall[k])]);
-      // The mean of the nodes' rotations is the one that turns unit vectors most nearly as all of them do.
-      for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) s.add(all.weight[k] * e, e + q.turned(e));
+    BodyStretch const stretch = stretch_of(b, first, end, *given, turn, shift);
+    all.limits.push_back(stretch.limits());
+    body_rests_[b] = stretch.largest_rest();
+    if (out_.displacement) body_shifts_[b] = norm(shift - shift_of_others);
+    for (std::size_t k = first; k < end; ++k) {
+      Vec3 const rest = stretch.rest(arm_in_body(b, k), (*given)[std::size_t(all.slot[k])]);
+      reach = std::max(reach, norm(rest));
+      rest_reach = std::max(rest_reach, norm(rest - (shift - shift_of_others)));
+      of_body[std::size_t(all.slot[k])] = 1;
     }
-    auto const q = kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[b]));
-    for (k = first; k < end; ++k) {
-      Index32 const n = plan.driving[std::size_t(all.wall[k])];
-      u[std::size_t(n)] = u[std::size_t(n)] - q.turned(c[n] - all.centre[b]);
-      rest[std::size_t(n)] = u[std::size_t(n)] - (shift - shift_of_others);
-    }
+    first = end;
   }
-  double largest = 0, largest_rest = 0;
-  for (Index32 const n : plan.known) {
-    if (is_middle_[std::size_t(n)] != 0) continue;
-    largest = std::max(largest, norm(u[std::size_t(n)]));
-    largest_rest = std::max(largest_rest, norm(rest[std::size_t(n)]));
+  if (std::all_of(all.limits.begin(), all.limits.end(), [](auto const& body) { return body.share == 0; })) {
+    all.limits.clear();
+    all.lever.clear();
   }
-  return {largest, largest_rest};
+  if (!out_.displacement) return;
+  for (std::size_t slot = 0; slot < given->size(); ++slot) {
+    if (of_body[slot] != 0 || is_middle_[std::size_t(out_.plan.known[slot])] != 0) continue;
+    reach = std::max(reach, norm((*given)[slot]));
+    rest_reach = std::max(rest_reach, norm((*given)[slot]));
+  }
+  reach_ = reach;
+  rest_reach_ = rest_reach;
+}
+
+Vec3 UnstructuredPlanner::arm_in_body(std::size_t body, std::size_t k) const {
+  TurningBodies const& all = out_.plan.turns_of_bodies;
+  return mesh_.coordinates[out_.plan.driving[std::size_t(all.wall[k])]] - all.centre[body];
+}
+
+BodyStretch UnstructuredPlanner::stretch_of(std::size_t body, std::size_t first, std::size_t end,
+                                            std::vector<Vec3> const& given,
+                                            std::vector<kernels::Quaternion<Vec3>> const& turn, Vec3& shift) {
+  TurningBodies& all = out_.plan.turns_of_bodies;
+  auto const moved = [&](std::size_t k) { return given[std::size_t(all.slot[k])]; };
+  kernels::VectorMoments s;
+  for (std::size_t k = first; k < end; ++k) {
+    shift += all.weight[k] * moved(k);
+    // The mean of the nodes' rotations is the one that turns unit vectors most nearly as all of them do.
+    for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      s.add(all.weight[k] * e, e + turn[std::size_t(all.wall[k])].turned(e));
+  }
+  BodyStretch out(all.axis[body], kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[body])));
+  for (std::size_t k = first; k < end; ++k) out.add_place(all.weight[k], arm_in_body(body, k));
+  out.settle();
+  for (std::size_t k = first; k < end; ++k) {
+    all.lever.push_back(out.lever(all.weight[k], arm_in_body(body, k)));
+    out.add_displacement(moved(k), all.lever.back());
+  }
+  out.fit();
+  for (std::size_t k = first; k < end; ++k) out.add_rest(all.weight[k], arm_in_body(body, k), moved(k) - shift);
+  out.decide(body_sizes_[body]);
+  return out;
+}
+
+std::vector<Vec3> UnstructuredPlanner::stretched_arms() const {
+  // By their lengths: at sharp edges columns lean on the wall, and are of no height above it.
+  std::vector<double> longest(std::size_t(mesh_.n_nodes()), 0);
+  std::vector<Vec3> arm;
+  for (std::size_t k = 0; k < columns_.node.size(); ++k) {
+    auto const root = columns_.root[k];
+    arm.push_back(mesh_.coordinates[columns_.node[k]] - mesh_.coordinates[root]);
+    longest[std::size_t(root)] = std::max(longest[std::size_t(root)], norm(arm.back()));
+  }
+  for (std::size_t k = 0; k < arm.size(); ++k)
+    arm[k] = smoothstep(norm(arm[k]) / longest[std::size_t(columns_.root[k])]) * arm[k];
+  return arm;
 }
 
 void UnstructuredPlanner::plan_turns() {
@@ -179,6 +246,7 @@ void UnstructuredPlanner::plan_turns() {
       body_of[std::size_t(columns_.node[k])] = b;
       all.rigid.push_back(columns_.node[k]);
     }
+  if (!all.lever.empty()) all.column_arm = stretched_arms();
   // Beyond three passages what turns is out of sight, on meshes whose sides go along with the flow too.
   moves_ = periodic_moves(host_, mesh_, out_.graph, out_.boundary, 3);
   for (RigidTransform const& move : moves_)

@@ -32,7 +32,8 @@ struct Boundaries {
   BoundaryFaces const& faces;
   std::vector<WallBody> const& bodies;
   std::vector<Vec3> const& centre;
-  std::vector<double> const& size;  ///< of bodies
+  std::vector<double> const& size;   ///< of bodies
+  std::vector<double> const& moved;  ///< how far they shift; 0: not known
   std::vector<RigidTransform> const& moves;
   RestingFaces const& resting;
   std::vector<SlipSurface> const& surfaces;
@@ -264,7 +265,7 @@ void Places::shifts(Room& room) const {
     room.beyond[b] = std::max(0.0, d - std::min(groups_[first_body_ + b].layer, way / 3));
     nearest = std::min(nearest, from_given - std::min(groups_[given].layer, (d + from_given) / 3));
   }
-  shift_shares(room.beyond, b_.size, std::max(0.0, nearest), room.shift);
+  shift_shares(room.beyond, b_.size, b_.moved, std::max(0.0, nearest), room.shift);
 }
 
 }  // namespace
@@ -272,8 +273,8 @@ void Places::shifts(Room& room) const {
 void UnstructuredPlanner::share_turns(Mask const& settled) {
   TurningBodies& all = out_.plan.turns_of_bodies;
   std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
-  Places const places({host_, mesh_, topology_.boundary, wall_bodies_.bodies, all.centre, body_sizes_, moves_,
-                       wall_bodies_.resting, out_.plan.surfaces, columns_.height, standing_.height});
+  Places const places({host_, mesh_, topology_.boundary, wall_bodies_.bodies, all.centre, body_sizes_, body_shifts_,
+                       moves_, wall_bodies_.resting, out_.plan.surfaces, columns_.height, standing_.height});
   constexpr std::size_t at_once = 512;
   for_all_parts(host_, "gridmorph::turn_shares", Index((n_nodes + at_once - 1) / at_once), [&](Index part) {
     Places::Room room = places.room();

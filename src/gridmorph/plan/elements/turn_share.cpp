@@ -49,9 +49,9 @@ double compactness(double perimeter, double size) {
   return std::clamp((perimeter / (2 * std::numbers::pi * size) - 0.7) / 0.15, 0.0, 1.0);
 }
 
-void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, double from_others,
-                  std::span<double> shares) {
-  constexpr double cubic = 0.1;
+void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, std::span<double const> moved,
+                  double from_others, std::span<double> shares) {
+  constexpr double cubic = 0.1, of_what_is_left = 0.1;
   double nearest = from_others, second = from_others;
   for (double const d : from_bodies) {
     second = std::min(second, std::max(d, nearest));
@@ -61,7 +61,9 @@ void shift_shares(std::span<double const> from_bodies, std::span<double const> s
   auto const grown = [&](std::size_t b) {
     double const d = from_bodies[b], others = d > nearest ? nearest : second;
     if (!std::isfinite(d) || !std::isfinite(others)) return d;
-    double const gap = std::min(1.0, (d + others) / (8 * sizes[b])), start = sizes[b] * gap * gap;
+    double const way = d + others, gap = std::min(1.0, way / (8 * sizes[b]));
+    double start = sizes[b] * gap * gap;
+    if (moved[b] > 0) start = std::min(start, of_what_is_left * way * std::max(0.0, way / moved[b] - 1));
     return start > 0 ? d - start * std::log1p(d / start) : d;
   };
   for (std::size_t b = 0; b < shares.size(); ++b) {

@@ -97,15 +97,17 @@ double compactness(double perimeter, double size);
 ///
 ///   s_b = 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3),   t = g_b / (g_b + D),
 ///   1 / D = 1 / d + sum over the other bodies k of 1 / g_k,
-///   g_b = d_b - l log(1 + d_b / l),   l = S_b min(1, W / (8 S_b))^2
+///   g_b = d_b - l log(1 + d_b / l),   l = min(S_b min(1, W / (8 S_b))^2, 0.1 W (W / m_b - 1))
 ///
 /// d_b the distances from the ends of the columns on the bodies, S_b the sizes of these, d the distance from the
-/// others, W the distance from body b plus that from what is nearest else. A shift strains what is on its way, so an
-/// even fade is best; far from all else without slope beside the body, where cells are small and must not shear. By
+/// others, W the distance from body b plus that from what is nearest else, m_b how far the body shifts, where that is
+/// known (`moved`; 0: not). A shift strains what is on its way, so an
+/// even fade is best; far from all else without slope beside the body, where cells are small and must not shear;
+/// as far as the way that is left allows. By
 /// measurement on spheres in outer ones 20 and 60 diameters away and on an airfoil in a C mesh (docs/unstructured.md).
 /// All of it where nothing else is there. Continuous in all distances; the sum over bodies is 1 at most.
-void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, double from_others,
-                  std::span<double> shares);
+void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, std::span<double const> moved,
+                  double from_others, std::span<double> shares);
 
 /// The closeness of some walls, each a list of edges in a plane z = constant,
 ///

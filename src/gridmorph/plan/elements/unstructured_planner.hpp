@@ -8,6 +8,7 @@
 #include <gridmorph/mesh/node_graph.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
+#include <gridmorph/plan/elements/body_stretch.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
@@ -46,6 +47,8 @@ MeshPart mesh_part(HostInstance const& host, Mesh const& mesh, NodeGraph const& 
                    BoundaryConditions const& boundary, std::vector<std::uint8_t> const& of_part);
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr Index most_lattice_nodes = 100'000;  ///< of the smooth part of the near field
 
 /// Plans a mesh of elements in steps, which share what is here; run() calls them in their order.
 class UnstructuredPlanner {
@@ -104,6 +107,13 @@ class UnstructuredPlanner {
   void find_columns();
   /// The heights that columns may have: as long as a user says; otherwise they leave room in gaps.
   [[nodiscard]] std::vector<double> most_heights() const;
+  /// How long columns on bodies may be where the walls below them turn differently (n_nodes): their arms are strained
+  /// by 0.03 of what the body moves by beyond its turn, in sizes of it, at most, but for what lattices are too coarse
+  /// to show, a few of their cells. Alike whatever the size of the motion. What bodies stretch by as wholes does not
+  /// count. Empty where no shape of the motion is known, or the case file says how far columns go.
+  [[nodiscard]] std::vector<double> longest_where_walls_bend() const;
+  /// About the spacing of the lattice of the near field around a body.
+  [[nodiscard]] double lattice_spacing(WallBody const& body) const;
   /// Finds the directions of the columns on driving nodes, before columns are cut.
   void find_wall_lines();
   void plan_columns();
@@ -130,8 +140,21 @@ class UnstructuredPlanner {
   void add_turning_body(WallBody const& body);
   /// Adds all boundary nodes whose displacement is known but for those of the bodies: what shifts are measured against.
   void add_other_boundaries();
-  /// The largest displacement less the turns of the bodies, and less their shifts too.
-  [[nodiscard]] std::pair<double, double> reach_beyond_turns() const;
+  /// The displacement in whose shape walls bend and stretch; null: not known.
+  [[nodiscard]] std::vector<Vec3> const* shape() const;
+  /// How walls turn at their nodes by a displacement (UnstructuredPlan::driving).
+  [[nodiscard]] std::vector<kernels::Quaternion<Vec3>> turns_of_walls(std::vector<Vec3> const& displacement) const;
+  /// How bodies stretch as wholes; and what displacement is left beyond turns and stretches, and beyond shifts too.
+  void plan_stretches();
+  /// That of one body, whose wall nodes are those from first to end in TurningBodies::wall, with their levers; adds its
+  /// shift.
+  [[nodiscard]] BodyStretch stretch_of(std::size_t body, std::size_t first, std::size_t end,
+                                       std::vector<Vec3> const& given,
+                                       std::vector<kernels::Quaternion<Vec3>> const& turn, Vec3& shift);
+  /// From the centre of a body to its wall node k of TurningBodies::wall.
+  [[nodiscard]] Vec3 arm_in_body(std::size_t body, std::size_t k) const;
+  /// h of kernels/body_stretch.hpp, of each node of a column.
+  [[nodiscard]] std::vector<Vec3> stretched_arms() const;
   /// Plans the turns of bodies; needs the columns.
   void plan_turns();
   /// What nodes have their shares whatever their distances are: those of turns, or all.
@@ -163,6 +186,8 @@ class UnstructuredPlanner {
   [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
   /// Plans how turns are passed on by layers: they fade from the ends of the columns on.
   void plan_layer_turns();
+  /// Finds how far from each wall node what stands on walls reaches; at sharp edges columns lean, and rise by little.
+  void measure_columns();
   /// The distance of a node from the end of the column on the nearest wall node.
   [[nodiscard]] double beyond_column(std::size_t n) const;
 
@@ -202,8 +227,11 @@ class UnstructuredPlanner {
   PreparedUnstructured out_;
   std::vector<int> layer_of_patch_;
   std::vector<Index32> driving_faces_;
-  WallBodies wall_bodies_;  ///< those that turn, and what does not turn with them
+  std::vector<double> column_reach_;  ///< (n_nodes) by nearest wall nodes
+  WallBodies wall_bodies_;            ///< those that turn, and what does not turn with them
   std::vector<double> body_sizes_;
+  std::vector<double> body_shifts_;    ///< how far bodies shift; 0: not known
+  std::vector<double> body_rests_;     ///< what turn and shift leave of a body's displacement, at most
   std::vector<RigidTransform> moves_;  ///< to the images of bodies, see periodic_moves()
   Columns columns_, standing_, sliding_;
   Mask is_known_, drives_, is_other_, near_;

@@ -1,0 +1,77 @@
+#include <gridmorph/geometry/smoothstep.hpp>
+#include <gridmorph/kernels/symmetric_eigen.hpp>
+#include <gridmorph/plan/elements/body_stretch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmorph {
+
+namespace {
+
+Vec3 beside(Vec3 const& axis, Vec3 const& v) { return v - dot(axis, v) * axis; }
+
+}  // namespace
+
+void BodyStretch::add_place(double w, Vec3 const& arm) {
+  Vec3 const y = beside(axis_, arm);
+  double const c[3] = {y.x, y.y, y.z};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) moments_[i][j] += w * c[i] * c[j];
+}
+
+void BodyStretch::settle() {
+  double v[3][3];
+  kernels::diagonalise(moments_, v);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max(largest, moments_[k][k]);
+  for (auto& row : limits_.span.m)
+    for (double& entry : row) entry = 0;
+  if (!(largest > 0)) return;
+  constexpr double thin = 0.01, full = 0.03;
+  for (int k = 0; k < 3; ++k) {
+    double const extent = std::sqrt(std::max(0.0, moments_[k][k] / largest));
+    double const share = smoothstep((extent - thin) / (full - thin));
+    if (share == 0) continue;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        limits_.span.m[i][j] += share * v[k][i] * v[k][j];
+        inverse_[i][j] += share * v[k][i] * v[k][j] / moments_[k][k];
+      }
+  }
+}
+
+Vec3 BodyStretch::lever(double w, Vec3 const& arm) const {
+  auto const row = [&](int i) { return inverse_[i][0] * arm.x + inverse_[i][1] * arm.y + inverse_[i][2] * arm.z; };
+  return w * Vec3{row(0), row(1), row(2)};
+}
+
+void BodyStretch::fit() {
+  kernels::StretchMap const n = kernels::in_plane(moments_of_u_, axis_);
+  for (int a = 0; a < 3; ++a) stretch_.column[a] = kernels::stretched(limits_, whole_, a, n.column[a]);
+}
+
+void BodyStretch::add_rest(double w, Vec3 const& arm, Vec3 const& u) {
+  Vec3 const left = u - whole_.turned(arm);
+  kernels::Quaternion<Vec3> const back{-whole_.imaginary, whole_.less};
+  Vec3 const v = left + back.turned(left), beyond = v - stretch_ * arm;
+  largest_rest_ = std::max(largest_rest_, norm(v));
+  before_ += w * dot(v, v);
+  after_ += w * dot(beyond, beyond);
+}
+
+void BodyStretch::decide(double size) {
+  double const rounding = 1e-12 * size;
+  bool const moves = before_ > rounding * rounding;
+  if (!moves) largest_rest_ = 0;
+  double const explained = moves ? 1 - after_ / before_ : 0;
+  limits_.share = smoothstep((explained - 0.5) / 0.4);
+  for (Vec3& column : stretch_.column) column = limits_.share * column;
+}
+
+Vec3 BodyStretch::rest(Vec3 const& arm, Vec3 const& u) const {
+  Vec3 const more = stretch_ * arm;
+  return u - more - whole_.turned(arm + more);
+}
+
+}  // namespace gridmorph
