@@ -7,6 +7,7 @@
 
 #include <generators/airfoil.hpp>
 #include <generators/sphere.hpp>
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rotation.hpp>
 #include <gridmorph/kernels/body_turn.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
@@ -558,6 +559,39 @@ TEST(StretchedBody, ThatIsRigidOrBendsMostlyIsNone) {
                                               return Vec3{0, x.y > 0 && std::abs(s) < 1 ? 0.02 * (1 - s * s) : 0, 0};
                                             }))),
             0);
+}
+
+/// Its rear half goes up.
+Vec3 bent(Vec3 const& x, double size) {
+  double const s = std::max(0.0, x.x - 0.5) / 0.5;
+  return {0, size * s * s, 0};
+}
+
+TEST(TurningBody, HasShortColumnsWhereItBendsAndNotForNoise) {
+  auto const c = c_mesh();
+  auto const columns = [&](std::function<Vec3(Vec3 const&)> const& moves, PlanOptions const& options = {}) {
+    return prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", moves), options).plan.columns.node;
+  };
+  auto const turn = rotation_about({0.4, 0.3, 0}, {0, 0, 1}, 0.4);
+  auto const rigid = [&](Vec3 const& x) { return turn(x) - x; };
+  auto const single = [&](Vec3 const& x) {
+    Vec3 const u = rigid(x);
+    return Vec3{double(float(u.x)), double(float(u.y)), 0};
+  };
+  auto const whole = columns(rigid);
+  EXPECT_EQ(columns(single), whole);
+  auto const at_once = columns([](Vec3 const& x) { return bent(x, 0.1); });
+  EXPECT_LT(at_once.size(), whole.size());
+  EXPECT_GT(at_once.size(), 100u);
+  // Half as much bends them alike, and so does what is known of displacements to come.
+  EXPECT_EQ(columns([](Vec3 const& x) { return bent(x, 0.05); }), at_once);
+  auto const known = prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", rigid), {}).plan.known;
+  PlanOptions options;
+  options.elements.motion = 0.1;
+  for (Index32 const n : known) options.elements.shape.push_back(bent(c.mesh.coordinates[n], 0.02));
+  EXPECT_EQ(columns(rigid, options), at_once);
+  options.elements.shape.pop_back();
+  EXPECT_THROW(columns(rigid, options), PlanError);
 }
 
 TEST(StretchedBody, AlongAPlaneKeepsIt) {

@@ -5,8 +5,7 @@
 //
 // c_b is the mean place of the body's walls, R_b the mean of how they turn around their nodes (wall_turn.hpp), R(f) the
 // share f of a rotation, t_b the mean displacement of its walls over their area, t_0 that of all other boundaries that
-// are displaced by rules, E_b how the body stretches
-// (body_stretch.hpp), nothing unless planned. f_b and s_b are shares
+// are displaced by rules, E_b how the body stretches (body_stretch.hpp), nothing unless planned. f_b and s_b are shares
 // planned for each node: 1 on the body and 0 on other boundaries. What walls do beyond that is carried by the rest of a
 // morph; t_0 leaves a motion that all boundaries have in common to it. The mean of rotations, not the rigid motion that
 // fits displacements best: a wing that bends does not pitch, although its swept tip goes up.
@@ -25,8 +24,8 @@
 // angle is f times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half
 // a turn has one axis for all nodes (settled()).
 //
-// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds what the body
-// does at Q^T (x - t), turned by Q, with a share of its own.
+// Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds what the body does at
+// Q^T (x - t), turned by Q, with a share of its own.
 //
 // Cost per wall node: 24 bytes of tables and 120 of its motion read, 24 flops. Per node: 16 bytes of shares for each
 // body, 24 of coordinates and 48 of displacements, about 76 flops where the shares are not zero.

@@ -62,9 +62,8 @@ void BodyStretch::add_rest(double w, Vec3 const& arm, Vec3 const& u) {
 
 void BodyStretch::decide(double size) {
   double const rounding = 1e-12 * size;
-  bool const moves = before_ > rounding * rounding;
-  if (!moves) largest_rest_ = 0;
-  double const explained = moves ? 1 - after_ / before_ : 0;
+  double const explained = before_ > rounding * rounding ? 1 - after_ / before_ : 0;
+  if (largest_rest_ < 1e-6 * size) largest_rest_ = 0;
   limits_.share = smoothstep((explained - 0.5) / 0.4);
   for (Vec3& column : stretch_.column) column = limits_.share * column;
 }

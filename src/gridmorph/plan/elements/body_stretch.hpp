@@ -33,7 +33,8 @@ class BodyStretch {
   /// size: of the body; what is below 1e-12 of it is rounding and counts as none.
   void decide(double size);
   [[nodiscard]] kernels::StretchLimits const& limits() const { return limits_; }
-  /// What turn and shift leave of displacements, at most; 0 where it is rounding.
+  /// What turn and shift leave of displacements, at most; 0 below 1e-6 of the size, which the rounding of data in
+  /// single precision may be.
   [[nodiscard]] double largest_rest() const { return largest_rest_; }
   /// What the turn and the stretch as a whole leave of a displacement.
   [[nodiscard]] Vec3 rest(Vec3 const& arm, Vec3 const& u) const;

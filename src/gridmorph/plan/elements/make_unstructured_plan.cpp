@@ -279,6 +279,10 @@ PreparedUnstructured prepare(HostInstance const& host, Mesh const& mesh, Unstruc
                              PlanOptions const& options, std::optional<std::vector<Vec3>> displacement) {
   check_coordinates(mesh, "gridmorph::prepare");
   detail::refuse_open_faces(face_patches);
+  if (auto const n = options.elements.shape.size(); n != 0 && n != boundary.known.size())
+    throw PlanError("ElementOptions::shape has " + std::to_string(n) + " displacements, and mesh " + mesh.source + " " +
+                    std::to_string(boundary.known.size()) +
+                    " boundary nodes that rules displace; give one for each, or none");
   auto const axes = plane_axes(mesh);
   if (axes == std::array<int, 3>{0, 1, 2})
     return detail::UnstructuredPlanner(host, mesh, topology, face_patches, std::move(graph), std::move(boundary),
