@@ -13,9 +13,8 @@
 //   wide      the same, outer sphere sixty diameters away
 //   plunge    the airfoil, moved across its chord by chords
 //   heave     a square in a box thirteen times as wide, moved along its side by sides
-//   pin       a square half way between the walls of a channel three times as high, towards one of them by shares of
-//   the
-//             gap
+//   pin       a square half way between the walls of a channel three times as high, towards one of them by shares
+//             of the gap
 //
 // Bodies that designers change:
 //
@@ -38,6 +37,7 @@
 
 #include <generators/airfoil.hpp>
 #include <generators/sphere.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/gridmorph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 
@@ -266,8 +266,7 @@ Vec3 bend(Vec3 const& x, double amount) {
 }
 /// The hinge is rounded over a tenth of the chord.
 Vec3 deflect(Vec3 const& x, double amount) {
-  double const s = std::clamp((x.x - 0.65) / 0.1, 0.0, 1.0);
-  return rotation_about({0.7, 0, 0}, z_axis, -s * s * (3 - 2 * s) * amount * degrees)(x) - x;
+  return rotation_about({0.7, 0, 0}, z_axis, -smoothstep((x.x - 0.65) / 0.1) * amount * degrees)(x) - x;
 }
 Vec3 raise(Vec3 const& x, double amount) {
   double const s = (x.x - 0.4) / 0.2;
