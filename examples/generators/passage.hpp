@@ -104,7 +104,7 @@ struct PassageOptions {
   /// across would otherwise grow by more than these factors from one to the next (small meshes).
   double first_cell = 2e-5;
   double max_growth = 1.5;
-  double end_wall_first_cell = 2e-4;
+  double end_wall_first_cell = 1e-5;
   double end_wall_max_growth = 1.25;
   BladeTip tip = BladeTip::none;
   double tip_gap = 0.015;   ///< in span

@@ -57,9 +57,7 @@ KOKKOS_INLINE_FUNCTION StretchMap in_plane(StretchMap m, Vec3 const& n) {
 /// Column a of E for a body whose rotation is `whole`, from that of N.
 template <class V>
 KOKKOS_INLINE_FUNCTION V stretched(StretchLimits const& limits, Quaternion<V> const& whole, int a, V const& moment) {
-  Vec3 const own{limits.span.m[0][a], limits.span.m[1][a], limits.span.m[2][a]};
-  Quaternion<V> const back{-whole.imaginary, whole.less};
-  return limits.share * (moment + back.turned(V{own} + moment));
+  return limits.share * (moment + whole.back().turned(V{column_of(limits.span, a)} + moment));
 }
 
 /// The sum of u l^T of each chunk of wall nodes, as SumBodyWalls has them.

@@ -32,6 +32,7 @@
 #pragma once
 
 #include <gridmorph/kernels/body_stretch.hpp>
+#include <gridmorph/kernels/column_motion.hpp>
 #include <gridmorph/kernels/inverse_distance.hpp>
 #include <gridmorph/kernels/lanes.hpp>
 #include <gridmorph/kernels/launch.hpp>
@@ -102,7 +103,7 @@ KOKKOS_INLINE_FUNCTION void best_quaternion(VectorMoments const& s, double& real
 /// change by `rate`.
 KOKKOS_INLINE_FUNCTION Vec3 best_rate(VectorMoments const& s, VectorMoments const& rate, Quaternion<Vec3> const& q) {
   // What R^T makes of vectors after is R^T of each row.
-  Quaternion<Vec3> const back{-q.imaginary, q.less};
+  Quaternion<Vec3> const back = q.back();
   auto const turned_back = [&](VectorMoments const& from) {
     VectorMoments to;
     for (int i = 0; i < 3; ++i) {
@@ -418,10 +419,10 @@ struct TakeBodyTurns {
 /// The columns on wall nodes, and how much of their bodies' stretch they make.
 template <class MemorySpace>
 struct StretchedColumns {
-  Kokkos::View<Index const*, MemorySpace> first;  ///< of wall node r the columns listed from first(r) on; empty: none
-  Kokkos::View<std::int32_t const*, MemorySpace> column;
-  Kokkos::View<std::int32_t const*, MemorySpace> node;  ///< of each column
-  Kokkos::View<Vec3 const*, MemorySpace> arm;           ///< h of each column
+  ColumnsOf<MemorySpace> of;                               ///< empty: none
+  Kokkos::View<std::int32_t const*, MemorySpace> node;     ///< of each column
+  Kokkos::View<Vec3 const*, MemorySpace> arm;              ///< h of each column
+  Kokkos::View<StretchLimits const*, MemorySpace> limits;  ///< (bodies)
 };
 
 /// The motion around wall nodes becomes what it is beyond their body's turn, in the places of the baseline, and where
@@ -432,8 +433,7 @@ struct TakeTurnsFromFrames {
   BodyTurnField<MemorySpace, V> field;
   Kokkos::View<std::int32_t const*, MemorySpace> node, body;  ///< per wall node; body -1: none
   StretchedColumns<MemorySpace> columns;
-  Kokkos::View<StretchLimits const*, MemorySpace> limits;  ///< (n_bodies), where there are such columns
-  Vec3* u;                                                 ///< with rates: their rates
+  Vec3* u;  ///< with rates: their rates
   AffineMotion* frame;
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
@@ -442,10 +442,10 @@ struct TakeTurnsFromFrames {
     if (b < 0) return;
     AffineMotion motion =
         frame[r] - AffineMotion{{}, matrix_of_map([&](Vec3 const& e) { return written(field.turned(b, 1, V{e})); })};
-    if (columns.first.extent(0) > 0) {
-      double const q = limits(b).share;
-      for (Index k = columns.first(r); k < columns.first(r + 1); ++k) {
-        Index const c = columns.column(k);
+    if (columns.of.first.extent(0) > 0) {
+      double const q = columns.limits(b).share;
+      for (Index k = columns.of.first(r); k < columns.of.first(r + 1); ++k) {
+        Index const c = columns.of.column(k);
         Vec3 const h = columns.arm(c);
         u[columns.node(c)] += written(field.stretched(b, h)) - q * (motion.gradient * h);
       }

@@ -17,6 +17,13 @@ struct ColumnTable {
   Kokkos::View<float const*, MemorySpace> share;
 };
 
+/// The columns on each wall node, those of node r from first(r) on.
+template <class MemorySpace>
+struct ColumnsOf {
+  Kokkos::View<Index const*, MemorySpace> first;
+  Kokkos::View<std::int32_t const*, MemorySpace> column;
+};
+
 /// V: as in wall_turn.hpp. u: displacements, or with rates their rates; those of the wall's nodes are there.
 template <class MemorySpace, class V>
 struct MoveColumns {

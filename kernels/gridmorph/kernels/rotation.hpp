@@ -75,6 +75,9 @@ KOKKOS_INLINE_FUNCTION V turned_by(V const& r, V const& y) {
   return (4 / (whole * whole)) * ((Scalar{1} - square) * across + 2 * cross(r, across));
 }
 
+KOKKOS_INLINE_FUNCTION Vec3 unit_vector(int a) { return {a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0}; }
+KOKKOS_INLINE_FUNCTION Vec3 column_of(Mat3 const& m, int j) { return {m.m[0][j], m.m[1][j], m.m[2][j]}; }
+
 /// The matrix of a linear map Vec3 -> Vec3.
 template <class Map>
 KOKKOS_INLINE_FUNCTION Mat3 matrix_of_map(Map const& map) {
@@ -168,6 +171,8 @@ struct Quaternion {
   KOKKOS_FORCEINLINE_FUNCTION static Quaternion share(Quaternion const& a, double f) {
     return {f * a.imaginary, f * a.less};
   }
+  /// The rotation the other way round.
+  KOKKOS_FORCEINLINE_FUNCTION Quaternion back() const { return {-imaginary, less}; }
   /// What the rotation R adds to y: R y - y.
   KOKKOS_FORCEINLINE_FUNCTION V turned(V const& y) const {
     Scalar const real = Scalar{1} - less;

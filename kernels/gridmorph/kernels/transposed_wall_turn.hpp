@@ -121,7 +121,7 @@ struct FanTwist {
     t1 = (1 / norm(across)) * across;
     t2 = cross(axis, t1);
     turn = quaternion_of(swing);
-    Quaternion<Vec3> const back{-turn.imaginary, turn.less};
+    Quaternion<Vec3> const back = turn.back();
     T1 = t1 + back.turned(t1);
     T2 = t2 + back.turned(t2);
     P1 = sums.before * T1;

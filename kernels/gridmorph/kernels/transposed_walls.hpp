@@ -14,16 +14,6 @@
 
 namespace gridmorph::kernels {
 
-KOKKOS_INLINE_FUNCTION Vec3 unit_vector(int a) { return {a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0}; }
-KOKKOS_INLINE_FUNCTION Vec3 column_of(Mat3 const& m, int j) { return {m.m[0][j], m.m[1][j], m.m[2][j]}; }
-
-/// The columns on each wall node, those of node r from first(r) on.
-template <class MemorySpace>
-struct ColumnsOf {
-  Kokkos::View<Index const*, MemorySpace> first;
-  Kokkos::View<std::int32_t const*, MemorySpace> column;
-};
-
 /// Gradients of the rotation and the displacement of each wall node, from its columns and the motion around it.
 template <class MemorySpace>
 struct WallBack {
@@ -205,9 +195,7 @@ KOKKOS_INLINE_FUNCTION void add_body_move(BodyTurnField<MemorySpace, Vec3> const
     return;
   }
   add_body_turn(field.half[b], f, y + f * (field.stretch[b] * y), g, to);
-  auto const whole = twice(Quaternion<Vec3>::share(field.half[b], f));
-  Quaternion<Vec3> const back{-whole.imaginary, whole.less};
-  to.stretch.add(f * (g + back.turned(g)), y);
+  to.stretch.add(f * (g + twice(Quaternion<Vec3>::share(field.half[b], f)).back().turned(g)), y);
 }
 
 /// Nodes of a part of a list, in chunks of so many.
@@ -256,7 +244,6 @@ struct BodyPartsOfFrames {
   Index n_bodies;
   Kokkos::View<std::int32_t const*, MemorySpace> node, body;
   StretchedColumns<MemorySpace> columns;
-  Kokkos::View<StretchLimits const*, MemorySpace> limits;
   Vec3* u;
   AffineMotion* frame;
   BodyGradient* parts;
@@ -271,7 +258,7 @@ struct BodyPartsOfFrames {
       if (b < 0) continue;
       u[node(r)] += frame[r].u;
       frame[r].u = {};
-      if (columns.first.extent(0) > 0) columns_back(r, b, of[b]);
+      if (columns.of.first.extent(0) > 0) columns_back(r, b, of[b]);
       for (int j = 0; j < 3; ++j)
         add_body_turn(field.half[b], 1, unit_vector(j), -column_of(frame[r].gradient, j), of[b]);
     }
@@ -279,12 +266,11 @@ struct BodyPartsOfFrames {
 
  private:
   KOKKOS_INLINE_FUNCTION void columns_back(Index r, Index b, BodyGradient& of) const {
-    double const q = limits(b).share;
+    double const q = columns.limits(b).share;
     AffineMotion motion = (1 - q) * frame[r];
-    auto const whole = twice(field.half[b]);
-    Quaternion<Vec3> const back{-whole.imaginary, whole.less};
-    for (Index k = columns.first(r); k < columns.first(r + 1); ++k) {
-      Index const column = columns.column(k);
+    auto const back = twice(field.half[b]).back();
+    for (Index k = columns.of.first(r); k < columns.of.first(r + 1); ++k) {
+      Index const column = columns.of.column(k);
       Vec3 const h = columns.arm(column), g = u[columns.node(column)];
       add_body_turn(field.half[b], 1, field.stretch[b] * h, g, of);
       of.stretch.add(g + back.turned(g), h);
@@ -324,9 +310,8 @@ struct StretchBodiesBack {
     BodyGradient to = of[b];
     for (int a = 0; a < 3; ++a) {
       Vec3 const g = limits.share * to.stretch.column[a];
-      Vec3 const own{limits.span.m[0][a], limits.span.m[1][a], limits.span.m[2][a]};
       // g . R^T v is R g . v.
-      add_body_turn(half[b], 1, g, own + n.column[a], to);
+      add_body_turn(half[b], 1, g, column_of(limits.span, a) + n.column[a], to);
       to.stretch.column[a] = g + whole.turned(g);
     }
     to.stretch = in_plane(to.stretch, walls.axis(b));

@@ -5,9 +5,9 @@
 //
 //   n = sum over faces of (a - x) x (b - x)      (2-D: over edges of (b - a) x plane normal)
 //
-// after: of these, each as long as it is before. (At a sharp edge both faces nearly cancel, and how differently they
-// stretch as the edge bends would turn what is left of them.) About the normal it turns by what is left,
-// the polar rotation of the gradient F in the wall, least squares over the nodes around,
+// after: of these, each as long as it is before. (At a sharp edge both faces nearly cancel: their sum would turn as
+// they stretch differently, not as they turn.) About the normal it turns by what is left, the polar rotation of the
+// gradient F in the wall, least squares over the nodes around,
 //
 //   atan2(F21 - F12, F11 + F22),   F = (sum of w q p^T) (sum of w p p^T)^-1
 //

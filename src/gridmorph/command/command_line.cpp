@@ -235,8 +235,8 @@ CLI::App* add_demo(CLI::App& app, CommandLine& out) {
   demo->add_option("--gap", out.demo_gap, "passage with --tip: height of the gap, in span (default 0.015)");
   demo->add_option(
       "--first-cell", out.demo_first_cell,
-      "passage: height of the first cells off the blade and the end walls, in span (default: 2e-5 chords and "
-      "2e-4, more where cells would grow too fast)");
+      "passage: height of the first cells off the blade and the end walls, in span (default: some 1e-5, more "
+      "where cells would grow too fast)");
   demo->add_flag("--single", out.demo_single, "passage: coordinates in single precision");
   demo->add_option("--axis", out.demo_axis,
                    "passage: direction of the machine's axis: x (default), y, z or three numbers \"1,2,3\"");

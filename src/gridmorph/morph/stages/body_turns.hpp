@@ -65,9 +65,8 @@ struct BodyTurnTables {
     if (stretches()) {
       stretch_sum = room_for<kernels::StretchMap>(exec, std::size_t(walls.n_wall_chunks), name("stretch_sum"));
       stretch = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch"));
-      auto const of_walls = columns_of_walls(exec, plan);
-      columns = {of_walls.first, of_walls.column, upload(exec, plan.columns.node, name("columns")),
-                 upload(exec, plan.turns_of_bodies.column_arm, name("column_arm"))};
+      columns = {columns_of_walls(exec, plan), upload(exec, plan.columns.node, name("columns")),
+                 upload(exec, plan.turns_of_bodies.column_arm, name("column_arm")), walls.limits};
       if (with_rate) {
         stretch_sum_rate = room_for<kernels::StretchMap>(exec, stretch_sum.extent(0), name("stretch_sum_rate"));
         stretch_rate = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch_rate"));
@@ -154,7 +153,6 @@ class TakeTurns {
                                                     t.driving,
                                                     t.body_of_driving,
                                                     t.columns,
-                                                    t.walls.limits,
                                                     g.u.data(),
                                                     g.frames.data(),
                                                     t.parts.data()};
@@ -210,10 +208,9 @@ class TakeTurns {
     auto const field = tables_->template field<V>(x);
     kernels::launch("gridmorph::bodies::take", exec,
                     kernels::TakeBodyTurns<Memory, V>{field, tables_->rigid, f.u.data()});
-    kernels::launch(
-        "gridmorph::bodies::frames", exec,
-        kernels::TakeTurnsFromFrames<Memory, V>{field, tables_->driving, tables_->body_of_driving, tables_->columns,
-                                                tables_->walls.limits, f.u.data(), f.frames.data()});
+    kernels::launch("gridmorph::bodies::frames", exec,
+                    kernels::TakeTurnsFromFrames<Memory, V>{field, tables_->driving, tables_->body_of_driving,
+                                                            tables_->columns, f.u.data(), f.frames.data()});
   }
 
   SharedBodyTurns<Exec> tables_;

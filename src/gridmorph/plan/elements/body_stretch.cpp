@@ -53,8 +53,7 @@ void BodyStretch::fit() {
 
 void BodyStretch::add_rest(double w, Vec3 const& arm, Vec3 const& u) {
   Vec3 const left = u - whole_.turned(arm);
-  kernels::Quaternion<Vec3> const back{-whole_.imaginary, whole_.less};
-  Vec3 const v = left + back.turned(left), beyond = v - stretch_ * arm;
+  Vec3 const v = left + whole_.back().turned(left), beyond = v - stretch_ * arm;
   largest_rest_ = std::max(largest_rest_, norm(v));
   before_ += w * dot(v, v);
   after_ += w * dot(beyond, beyond);
