@@ -46,6 +46,22 @@ std::unordered_map<Index, Index> slots_of(std::vector<std::pair<Index, Index>> c
   return slot;
 }
 
+/// The zones of the nodes that are in those slots.
+std::unordered_map<Index, std::vector<int>> zones_of(std::unordered_map<Index, Index> const& slots, Mesh const& mesh,
+                                                     Plan const& plan) {
+  std::unordered_map<Index, std::vector<int>> zones;
+  for (auto const& [node, slot] : slots)
+    if (slot >= 0) zones[slot];
+  for (kernels::NodeCopy const& copy : plan.skeleton_nodes)
+    for (Index q = 0; q < copy.n_q; ++q)
+      for (Index p = 0; p < copy.n_p; ++p)
+        if (auto const at = zones.find(copy.source + p * copy.source_stride_p + q * copy.source_stride_q);
+            at != zones.end())
+          at->second.push_back(
+              mesh.zone_of(copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q));
+  return zones;
+}
+
 }  // namespace
 
 void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& plan) {
@@ -53,6 +69,12 @@ void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& 
   auto const pairs = pairs_at_one_place(mesh, plan.mesh_size);
   if (pairs.empty()) return;
   auto const slot = slots_of(pairs, plan);
+  auto const zones = zones_of(slot, mesh, plan);
+  // Where cells are thinner than what coordinates resolve, the node beside the one that it is joined to is as near.
+  auto const is_joined = [&](Index s, Index other) {
+    std::vector<int> const& joined = zones.at(s);
+    return std::find(joined.begin(), joined.end(), mesh.zone_of(other)) != joined.end();
+  };
   std::unordered_map<Index, int> rule_of_slot;
   for (auto const& request : boundary.requests)
     rule_of_slot.try_emplace(plan.boundary_slots[std::size_t(request.boundary_node)], request.rule);
@@ -65,6 +87,7 @@ void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& 
   for (auto const& [a, b] : pairs) {
     Index const p = slot.at(a), q = slot.at(b);
     if (p < 0 || q < 0 || p == q || (rule(p) >= 0 && rule(p) == rule(q))) continue;
+    if (is_joined(p, b) || is_joined(q, a)) continue;
     if (count++ == 0) first = {a, b};
   }
   if (count > 0)
