@@ -2,8 +2,8 @@
 // on.
 //
 //   free    the wall's rotation there (wall_turn.hpp), over all near-field walls that touch, across the edges of blocks
-//             Where faces lie on one another, as at the ends of a tip that is a line, their normals count as those of
-//             one side
+//             Where the wall is sharp, its faces' normals after count as long as they were before (sharpness()); where
+//             faces lie on one another, as at the ends of a tip that is a line, as those of one side
 //   raw     free, the way round that is nearer to the mean of its body (way_near(), body_turn.hpp): near half a turn
 //             some nodes of a body that is deformed besides turn by 179 degrees and some by 181
 //             At an edge of the wall, where its faces may turn differently, no further than the line keeps a share of
@@ -109,6 +109,20 @@ struct ClearVectors {
 /// Normals of faces that lie on one another add up to less than this share of their area.
 inline constexpr double folded_walls = 1e-6;
 
+/// How sharp a wall is at a root around which its faces have that area, from the sum of their normals: 0 where they
+/// turn by less than some 18 degrees from its direction, 1 from 37 on.
+KOKKOS_INLINE_FUNCTION double sharpness(Vec3 const& normal, double area) {
+  double const share = area > 0 ? norm(normal) / area : 1, s = (0.95 - share) / 0.15;
+  return s > 0 ? (s < 1 ? s * s * (3 - 2 * s) : 1) : 0;
+}
+
+/// What a face's normal after counts where the wall is so sharp; the normal itself, to the last bit, where nothing
+/// stretches.
+template <class V>
+KOKKOS_INLINE_FUNCTION V counted(double sharp, V const& before, V const& after) {
+  return sharp > 0 ? after + sharp * (as_long_as(before, after) - after) : after;
+}
+
 /// The arms of a root before and after. By differences of displacements: nothing turns where all are the same.
 template <class MemorySpace, class V>
 struct RootArms {
@@ -143,9 +157,11 @@ struct FreeRootTurn {
     for (Index k = 0; k < root.n_neighbours; k += 2) {
       V const face = cross(before(k), before(k + 1));
       normal = normal + face;
-      moved = moved + cross(after(k), after(k + 1));
       area += norm(value_of(face));
     }
+    double const sharp = sharpness(value_of(normal), area);
+    for (Index k = 0; k < root.n_neighbours; k += 2)
+      moved = moved + counted(sharp, cross(before(k), before(k + 1)), cross(after(k), after(k + 1)));
     if (!(norm(value_of(normal)) > folded_walls * area)) add_one_side(root, before, after, normal, moved);
     V const swing = turn_between(normal, moved);
     auto const size = norm(moved);
@@ -163,7 +179,7 @@ struct FreeRootTurn {
       V const face = cross(before(k), before(k + 1));
       double const side = dot(value_of(face), value_of(normal)) < 0 ? -1 : 1;
       normal = normal + side * face;
-      moved = moved + side * cross(after(k), after(k + 1));
+      moved = moved + side * as_long_as(face, cross(after(k), after(k + 1)));
     }
   }
 };

@@ -114,24 +114,27 @@ struct RawRootTurnBack {
       Vec3 const before = cross(face.before[0], face.before[1]);
       area += norm(before);
       normal += before;
-      moved += cross(face.after[0], face.after[1]);
       for (int m = 0; m < 2; ++m) sums.add(weight(face.before[m]), face.before[m], face.after[m]);
     });
+    double const sharp = sharpness(normal, area);
     bool const folded = !(norm(normal) > folded_walls * area);
-    if (folded) {
-      normal = moved = {};
-      fan.for_faces(true, [&](Arms const& face, double side, Index) {
-        normal += side * cross(face.before[0], face.before[1]);
-        moved += side * cross(face.after[0], face.after[1]);
-      });
-    }
+    normal = {};
+    fan.for_faces(folded, [&](Arms const& face, double side, Index) {
+      Vec3 const before = cross(face.before[0], face.before[1]);
+      normal += side * before;
+      moved += side * counted(sharp, before, cross(face.after[0], face.after[1]));
+    });
     if (!(norm(moved) > 0)) return clear(root, own);
     FanTurn const turn(normal, moved, sums);
     KeptHeightGradient kept;
     FanTurn::Gradient const of = turn.gradient(of_free_turn(root, fan, turn.rotation(), g, kept));
     Vec3 sum;
     fan.for_faces(folded, [&](Arms const& face, double side, Index k) {
-      Vec3 const of_face = k == 2 * kept.face ? side * of.moved + kept.moved : side * of.moved;
+      Vec3 const before = cross(face.before[0], face.before[1]), after = cross(face.after[0], face.after[1]),
+                 of_counted = side * of.moved;
+      Vec3 of_face = of_counted;
+      if (sharp > 0) of_face += sharp * (as_long_as_gradient(before, after, of_counted) - of_counted);
+      if (k == 2 * kept.face) of_face += kept.moved;
       Vec3 const first = of.twist.after(weight(face.before[0]) * face.before[0]) + cross(face.after[1], of_face);
       Vec3 const next = of.twist.after(weight(face.before[1]) * face.before[1]) + cross(of_face, face.after[0]);
       parts.set(root.first_neighbour + k, first);

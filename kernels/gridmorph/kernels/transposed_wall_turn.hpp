@@ -252,4 +252,11 @@ class FanTurn {
   FanTwist twist_;
 };
 
+/// The gradient of the normal after from that of as_long_as(), g.
+KOKKOS_INLINE_FUNCTION Vec3 as_long_as_gradient(Vec3 const& before, Vec3 const& after, Vec3 const& g) {
+  double const square = dot(after, after);
+  if (!(square > 0)) return {};
+  return (norm(before) / norm(after)) * (g - (dot(after, g) / square) * after);
+}
+
 }  // namespace gridmorph::kernels

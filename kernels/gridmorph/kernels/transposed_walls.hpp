@@ -65,13 +65,6 @@ struct SeedMotionsBack {
   }
 };
 
-/// The gradient of the normal after from that of as_long_as(), g.
-KOKKOS_INLINE_FUNCTION Vec3 as_long_as_gradient(Vec3 const& before, Vec3 const& after, Vec3 const& g) {
-  double const square = dot(after, after);
-  if (!(square > 0)) return {};
-  return (norm(before) / norm(after)) * (g - (dot(after, g) / square) * after);
-}
-
 /// Transpose of WallTurn: gradients of the displacements of the nodes around each wall node, at their places in
 /// WallTable::around, and after them all those of the wall nodes themselves.
 template <class MemorySpace>
