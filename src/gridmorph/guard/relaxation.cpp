@@ -282,16 +282,18 @@ class Relaxation {
   [[nodiscard]] Vec3 affine_mean(Index32 n) const {
     Coordinates const& x = mesh_.coordinates;
     auto const neighbours = plan_.graph.neighbours[n];
-    double weights = 0;
+    double longest = 0, weights = 0;
+    for (Index32 const m : neighbours) longest = std::max(longest, distance(x[n], x[m]));
+    if (!(longest > 0)) return x_[n] - x[n];
     Vec3 centre, mean;
-    auto const weight = [&](Index32 m) { return 1 / std::max(distance(x[n], x[m]), 1e-300); };
+    // Edges shorter than a ten-millionth of the longest are round-off between nodes at one place.
+    auto const weight = [&](Index32 m) { return 1 / std::max(distance(x[n], x[m]), 1e-7 * longest); };
     for (Index32 const m : neighbours) {
       double const w = weight(m);
       weights += w;
       centre += w * x[m];
       mean += w * (x_[m] - x[m]);
     }
-    if (!(weights > 0)) return x_[n] - x[n];
     centre = (1 / weights) * centre;
     mean = (1 / weights) * mean;
     // Moments of the neighbours' places, and of displacements with places.
