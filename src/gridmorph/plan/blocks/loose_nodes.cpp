@@ -23,8 +23,10 @@ std::vector<Index> patch_nodes(Mesh const& mesh, bool sliding) {
   return out;
 }
 
+using Pairs = std::vector<std::pair<Index, Index>>;
+
 /// Pairs of nodes at one place, those on planes that slide left out.
-std::vector<std::pair<Index, Index>> pairs_at_one_place(Mesh const& mesh, double mesh_size) {
+Pairs pairs_at_one_place(Mesh const& mesh, double mesh_size) {
   std::vector<Index> const all = patch_nodes(mesh, false), sliding = patch_nodes(mesh, true);
   std::vector<Index> nodes;
   std::set_difference(all.begin(), all.end(), sliding.begin(), sliding.end(), std::back_inserter(nodes));
@@ -33,48 +35,51 @@ std::vector<std::pair<Index, Index>> pairs_at_one_place(Mesh const& mesh, double
       coincidence_tolerance(mesh_size, coordinate_resolution(mesh)));
 }
 
-/// Slots of the nodes that occur in the pairs.
-std::unordered_map<Index, Index> slots_of(std::vector<std::pair<Index, Index>> const& pairs, Plan const& plan) {
-  std::unordered_map<Index, Index> slot;
-  for (auto const& [a, b] : pairs) slot[a] = slot[b] = -1;
+/// visit(node, slot) for all nodes that have one.
+template <class Visit>
+void for_each_slot(Plan const& plan, Visit const& visit) {
   for (kernels::NodeCopy const& copy : plan.skeleton_nodes)
     for (Index q = 0; q < copy.n_q; ++q)
       for (Index p = 0; p < copy.n_p; ++p)
-        if (auto const at = slot.find(copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q);
-            at != slot.end())
-          at->second = copy.source + p * copy.source_stride_p + q * copy.source_stride_q;
-  return slot;
+        visit(copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q,
+              copy.source + p * copy.source_stride_p + q * copy.source_stride_q);
 }
 
-/// The zones of the nodes that are in those slots.
-std::unordered_map<Index, std::vector<int>> zones_of(std::unordered_map<Index, Index> const& slots, Mesh const& mesh,
-                                                     Plan const& plan) {
-  std::unordered_map<Index, std::vector<int>> zones;
-  for (auto const& [node, slot] : slots)
-    if (slot >= 0) zones[slot];
-  for (kernels::NodeCopy const& copy : plan.skeleton_nodes)
-    for (Index q = 0; q < copy.n_q; ++q)
-      for (Index p = 0; p < copy.n_p; ++p)
-        if (auto const at = zones.find(copy.source + p * copy.source_stride_p + q * copy.source_stride_q);
-            at != zones.end())
-          at->second.push_back(
-              mesh.zone_of(copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q));
-  return zones;
+/// Slots of the nodes that occur in the pairs.
+std::unordered_map<Index, Index> slots_of(Pairs const& pairs, Plan const& plan) {
+  std::unordered_map<Index, Index> slots;
+  for (auto const& [a, b] : pairs) slots[a] = slots[b] = -1;
+  for_each_slot(plan, [&](Index node, Index slot) {
+    if (auto const at = slots.find(node); at != slots.end()) at->second = slot;
+  });
+  return slots;
+}
+
+/// Drops pairs of which one node is joined to the other's zone: where cells are thinner than what coordinates resolve,
+/// the node beside the one that it is joined to is as near.
+void drop_joined(Mesh const& mesh, Plan const& plan, std::unordered_map<Index, Index> const& slots, Pairs& pairs) {
+  std::unordered_map<Index, std::vector<int>> zones;  // of the nodes in a slot
+  for (auto const& [a, b] : pairs)
+    for (Index const n : {a, b}) zones[slots.at(n)];
+  for_each_slot(plan, [&](Index node, Index slot) {
+    if (auto const at = zones.find(slot); at != zones.end()) at->second.push_back(mesh.zone_of(node));
+  });
+  auto const is_joined = [&](Index n, Index other) {
+    std::vector<int> const& joined = zones.at(slots.at(n));
+    return std::find(joined.begin(), joined.end(), mesh.zone_of(other)) != joined.end();
+  };
+  std::erase_if(pairs, [&](auto const& pair) {
+    return is_joined(pair.first, pair.second) || is_joined(pair.second, pair.first);
+  });
 }
 
 }  // namespace
 
 void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& plan) {
   if (mesh.zones.size() < 2) return;
-  auto const pairs = pairs_at_one_place(mesh, plan.mesh_size);
+  Pairs pairs = pairs_at_one_place(mesh, plan.mesh_size);
   if (pairs.empty()) return;
-  auto const slot = slots_of(pairs, plan);
-  auto const zones = zones_of(slot, mesh, plan);
-  // Where cells are thinner than what coordinates resolve, the node beside the one that it is joined to is as near.
-  auto const is_joined = [&](Index s, Index other) {
-    std::vector<int> const& joined = zones.at(s);
-    return std::find(joined.begin(), joined.end(), mesh.zone_of(other)) != joined.end();
-  };
+  auto const slots = slots_of(pairs, plan);
   std::unordered_map<Index, int> rule_of_slot;
   for (auto const& request : boundary.requests)
     rule_of_slot.try_emplace(plan.boundary_slots[std::size_t(request.boundary_node)], request.rule);
@@ -82,18 +87,17 @@ void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& 
     auto const at = rule_of_slot.find(s);
     return at == rule_of_slot.end() ? -1 : at->second;
   };
-  Index count = 0;
-  std::pair<Index, Index> first{-1, -1};
-  for (auto const& [a, b] : pairs) {
-    Index const p = slot.at(a), q = slot.at(b);
-    if (p < 0 || q < 0 || p == q || (rule(p) >= 0 && rule(p) == rule(q))) continue;
-    if (is_joined(p, b) || is_joined(q, a)) continue;
-    if (count++ == 0) first = {a, b};
-  }
-  if (count > 0)
+  std::erase_if(pairs, [&](auto const& pair) {
+    Index const p = slots.at(pair.first), q = slots.at(pair.second);
+    return p < 0 || q < 0 || p == q || (rule(p) >= 0 && rule(p) == rule(q));
+  });
+  if (pairs.empty()) return;
+  drop_joined(mesh, plan, slots, pairs);
+  if (!pairs.empty())
     plan.notes.push_back(
-        std::to_string(count) + " pairs of nodes of two zones coincide where no interface joins them, the first " +
-        describe_node(mesh, first.first) + " and " + describe_node(mesh, first.second) +
+        std::to_string(pairs.size()) +
+        " pairs of nodes of two zones coincide where no interface joins them, the first " +
+        describe_node(mesh, pairs.front().first) + " and " + describe_node(mesh, pairs.front().second) +
         "; they move each with their own zone and may come apart: where they are to stay one, declare 1-to-1 "
         "interfaces, or give the patches on both sides one explicit rule");
 }
