@@ -199,53 +199,6 @@ TEST(UnstructuredMorph, BafflesMoveAsTheyAreToldOnBothSides) {
   }
 }
 
-TEST(UnstructuredMorph, ATargetThatGoesOnBeyondTheSidesIsTheOneThatEndsThere) {
-  auto const slope = [](double low, double high, int n) {
-    TargetGeometry out;
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        double const x = low + (high - low) * i / n, y = low + (high - low) * j / n;
-        out.points.push_back({x, y, 0.1 * x + 0.05 * y});
-      }
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        int const a = i + (n + 1) * j;
-        out.triangles.push_back({a, a + 1, a + n + 2});
-        out.triangles.push_back({a, a + n + 2, a + n + 1});
-      }
-    TargetRule rule;
-    rule.target = std::make_shared<TargetGeometry const>(std::move(out));
-    rule.mapping = TargetRule::Mapping::projection;
-    return rule;
-  };
-  Mesh const box = test::unit_box({6, 6, 5});
-  for (bool const blocks : {true, false}) {
-    SCOPED_TRACE(blocks ? "blocks" : "elements");
-    Case const c(test::to_hexahedra(box));
-    auto const moved = [&](TargetRule rule) {
-      Motion const motion =
-          test::motion_of({test::rule_for({"k_min"}, std::move(rule)), test::rule_for({"k_max"}, FixedRule{}),
-                           test::rule_for({"i_*", "j_*"}, SlipRule{SlipRule::Surface::plane})});
-      return blocks ? test::morph(box, motion).morphed.position : c.morph(motion).x;
-    };
-    Coordinates const cut = moved(slope(0, 6, 12));
-    for (auto const& [low, high, n] : {std::tuple(-0.6, 6.6, 9), {-27.0, 33.0, 7}, {-1e-3, 6 + 1e-3, 5}}) {
-      Coordinates const x = moved(slope(low, high, n));
-      for (Index v = 0; v < box.n_nodes(); ++v) {
-        ASSERT_LT(distance(x[v], cut[v]), 1e-10) << v << " of a target from " << low;
-        Vec3 const before = box.coordinates[v];
-        for (auto const& [was, is] : {std::pair(before.x, x.x(v)), {before.y, x.y(v)}})
-          if (was == 0 || was == 6) {
-            EXPECT_NEAR(is, was, 1e-10);
-          }
-        if (before.z == 0) {
-          EXPECT_NEAR(x.z(v), 0.1 * x.x(v) + 0.05 * x.y(v), 1e-10);
-        }
-      }
-    }
-  }
-}
-
 TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
   // Where x, y and z of the plane across z go.
   using Map = std::function<Vec3(Vec3 const&)>;

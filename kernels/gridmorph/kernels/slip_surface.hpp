@@ -193,16 +193,24 @@ struct SlipSurfaceView {
   /// Distance of a baseline node from a surface of revolution or of facets that is the baseline mesh's own and is kept;
   /// 0 for other kinds and for nodes that are farther off.
   KOKKOS_INLINE_FUNCTION double own_offset(Vec3 const& baseline) const {
+    if (kind == SlipKind::plane || kind == SlipKind::axial) return 0;
+    double const off = offset(baseline);
+    return is_own(off) ? off : 0;
+  }
+
+  /// How far p is from the surface, along the way that project() takes and with the sign of its normal: outward for
+  /// surfaces of revolution, or downstream where they lie across the axis. Kind axial: 0.
+  KOKKOS_INLINE_FUNCTION double offset(Vec3 const& p) const {
+    if (kind == SlipKind::axial) return 0;
     if (kind == SlipKind::facets) {
-      FacetFoot const foot = facets.closest_point(baseline);
-      double const off = dot(baseline - foot.point, foot.normal);
-      return is_own(off) ? off : 0;
+      FacetFoot const foot = facets.closest_point(p);
+      return dot(p - foot.point, foot.normal);
     }
-    if (kind != SlipKind::revolution && kind != SlipKind::meridional) return 0;
-    Vec3 const d = baseline - origin;
-    double const a = dot(d, direction), r = norm(d - a * direction);
-    double const offset = kind == SlipKind::revolution ? r - profile(a) : foot(a, r).away;
-    return is_own(offset) ? offset : 0;
+    Vec3 const d = p - origin;
+    double const a = dot(d, direction);
+    if (kind == SlipKind::plane) return a;
+    double const r = norm(d - a * direction);
+    return kind == SlipKind::revolution ? r - profile(a) : foot(a, r).away;
   }
 
   /// The displacement of a baseline node, corrected so that the moved node is where the surface wants it.

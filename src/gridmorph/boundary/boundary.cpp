@@ -137,11 +137,17 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
 std::vector<Vec3> Boundary::points(std::span<int const> patches) const {
   std::vector<Vec3> out;
   for (int const p : patches) {
-    auto const& nodes = surface(p).nodes;
-    for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
-    if (plane_)
-      for (Index const n : nodes) out.push_back(mesh_.coordinates[n] + across_);
+    auto const own = points_of(surface(p).nodes);
+    out.insert(out.end(), own.begin(), own.end());
   }
+  return out;
+}
+
+std::vector<Vec3> Boundary::points_of(std::vector<Index> const& nodes) const {
+  std::vector<Vec3> out;
+  for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
+  if (plane_)
+    for (Index const n : nodes) out.push_back(mesh_.coordinates[n] + across_);
   return out;
 }
 

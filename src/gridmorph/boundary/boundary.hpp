@@ -81,6 +81,8 @@ class Boundary {
   /// mesh: as the edges of strips they have planes and profiles.
   [[nodiscard]] std::vector<Vec3> points(std::span<int const> patches) const;
   [[nodiscard]] std::vector<Vec3> points(int patch) const { return points({&patch, 1}); }
+  /// The same of nodes.
+  [[nodiscard]] std::vector<Vec3> points_of(std::vector<Index> const& nodes) const;
   /// The facets of patches, in no particular orientation; none of lines.
   [[nodiscard]] FacetList facets(std::span<int const> patches) const;
   /// Whether two patches have nodes of one zone in common.

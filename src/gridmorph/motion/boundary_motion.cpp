@@ -117,12 +117,18 @@ struct BoundaryMotion::Impl {
   /// Makes the motions of target rules, before the blade rows, which may follow a blade that has a target.
   void make_targets() {
     Problems problems;
+    BesideTarget beside{slip->surfaces, {}, {}};
+    for (int p = 0; p < int(boundary->patches().size()); ++p) {
+      if (motion.patch[std::size_t(p)].rule < 0) continue;
+      if (std::holds_alternative<FixedRule>(motion.patch_rule(p))) beside.fixed.push_back(p);
+      if (std::holds_alternative<FreeRule>(motion.patch_rule(p))) beside.free.push_back(p);
+    }
     for (std::size_t r = 0; r < rules.size(); ++r) {
       auto const* target = std::get_if<TargetRule>(&rules[r].rule);
       if (target == nullptr) continue;
       try {
         targets[int(r)] = std::make_shared<TargetMotion const>(*boundary, patches_of(int(r)), *target, motion.axis,
-                                                               slip->surfaces, label(int(r)), notes);
+                                                               beside, label(int(r)), notes);
       } catch (MotionError const& e) {
         problems.add(e.what());
       }

@@ -159,15 +159,6 @@ class Finder {
     PlaneFit fit;
   };
 
-  /// Positions of nodes, as Boundary::points() has them for patches.
-  [[nodiscard]] std::vector<Vec3> points_of(std::vector<Index> const& nodes) const {
-    std::vector<Vec3> out;
-    for (Index const n : nodes) out.push_back(boundary_.coordinates()[n]);
-    if (boundary_.is_plane())
-      for (Index const n : nodes) out.push_back(boundary_.coordinates()[n] + boundary_.across());
-    return out;
-  }
-
   /// The patch, or its planes where it lies on several.
   [[nodiscard]] std::vector<Part> parts_of(int p) const {
     Part whole{p, {}, boundary_.points(p), {}};
@@ -183,7 +174,7 @@ class Finder {
     std::vector<Part> out;
     std::vector<Index> listed;
     for (auto& nodes : flat_pieces(boundary_, p)) {
-      auto points = points_of(nodes);
+      auto points = boundary_.points_of(nodes);
       PlaneFit const fit = fit_plane(points);
       listed.insert(listed.end(), nodes.begin(), nodes.end());
       out.push_back({p, std::move(nodes), std::move(points), fit});

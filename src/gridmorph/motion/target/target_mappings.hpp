@@ -1,12 +1,12 @@
 // Where a target takes the nodes of a surface: onto grids or listed nodes of its own, onto a profile in a plane, onto
-// sections; and a target that goes on beyond the sides of the mesh, cut off there.
+// sections.
 #pragma once
 
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
-#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
 #include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/target/target_sides.hpp>
 #include <gridmorph/motion/target_rule.hpp>
 
 #include <optional>
@@ -36,11 +36,13 @@ std::vector<Vec3> match_nodes(PatchSurface const& surface, std::vector<Vec3> con
 /// has some, laid into that plane, otherwise the cut of its facets with it. Corners go to corners and the lines between
 /// them to the way between their images, with equal shares of arc length; a closed line without corners is turned so
 /// that its nodes move least, an open one goes to an open one from end to end (edge_images.hpp). What has no
-/// counterpart goes to the closest point. A profile of points around a closed line is closed.
+/// counterpart goes to the closest point. A profile of points around a closed line is closed. It is cut off at `sides`.
+/// A vertex of `held` (one per vertex) that lies on the profile to 1e-6 of the size of the surface stays.
 ///
 /// Throws MotionError when sections do not lie across z and when the plane meets no facet. Cost O(vertices log points).
-std::vector<Vec3> project_to_profile(PatchSurface const& surface, TargetGeometry const& target, std::string const& name,
-                                     std::vector<std::string>& notes);
+std::vector<Vec3> project_to_profile(PatchSurface const& surface, TargetGeometry const& target,
+                                     std::vector<TargetSide> const& sides, std::vector<char> const& held,
+                                     std::string const& name, std::vector<std::string>& notes);
 
 struct SectionMapping {
   std::vector<Vec3> displacement;  ///< per vertex of the surface
@@ -60,12 +62,5 @@ struct SectionMapping {
 /// Throws MotionError when the patches are not one blade or wing, or sections are not usable. Cost O(nodes log points).
 SectionMapping map_sections(Boundary const& boundary, PatchSurface const& surface, TargetRule const& rule,
                             Axis const& axis, std::string const& name, std::vector<std::string>& notes);
-
-/// The part of a target on the side of the surface that moves of every plane that the mesh ends on: planes among
-/// `slides` that nodes of the surface lie on and none crosses, to 1e-6 of its size. Nodes on such a plane stay on it,
-/// so that a target which goes on beyond (terrain, a body whose half is meshed) is one that ends there. Edges are cut
-/// once, to rounding: what ends on a plane lies on it. A target that ends before, or lies beyond altogether, comes back
-/// as it is. Cost O(points + triangles) for each plane that cuts.
-TargetTree cut_at_sides(TargetTree target, std::vector<Vec3> const& surface, std::vector<SlipSurface> const& slides);
 
 }  // namespace gridmorph

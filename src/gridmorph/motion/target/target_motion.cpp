@@ -89,7 +89,7 @@ TargetTree target_facets(TargetGeometry const& target, std::string const& name) 
 }
 
 TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule,
-                           Axis const& axis, std::vector<SlipSurface> const& slides, std::string const& name,
+                           Axis const& axis, BesideTarget const& beside, std::string const& name,
                            std::vector<std::string>& notes)
     : surface_(boundary, patches), name_(name), share_(rule.share) {
   if (!rule.target) throw MotionError(name + ": it has no target");
@@ -100,7 +100,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
   if (patches.empty()) throw MotionError(name + ": it moves patches only, and names none");
   if (!(surface_.size > 0)) throw MotionError(name + ": the nodes of its patches are one point");
   if (!surface_.gridded) {
-    map_faces(boundary, rule, axis, slides, notes);
+    map_faces(boundary, rule, axis, beside, notes);
     return;
   }
   bool const automatic = rule.mapping == Mapping::automatic;
@@ -127,7 +127,7 @@ TargetMotion::TargetMotion(Boundary const& boundary, std::vector<int> const& pat
     return;
   }
   mapping_ = Mapping::projection;
-  project(rule, slides, notes);
+  project(boundary, rule, axis, beside, notes);
 }
 
 TargetMotion::TargetMotion(TargetMotion const& other, double share) : TargetMotion(other) { share_ = share; }
@@ -142,14 +142,15 @@ void TargetMotion::map_onto_sections(Boundary const& boundary, TargetRule const&
   to_target_ = std::move(mapped.to_target);
 }
 
-void TargetMotion::project(TargetRule const& rule, std::vector<SlipSurface> const& slides,
-                           std::vector<std::string>& notes) {
-  facets_ = cut_at_sides(target_facets(*rule.target, name_), surface_.points, slides);
-  displacement_ = project_to_target(surface_, facets_, rule.crease_angle_deg, name_, notes);
+void TargetMotion::project(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
+                           BesideTarget const& beside, std::vector<std::string>& notes) {
+  facets_ = cut_at_sides(target_facets(*rule.target, name_), sides_beside(boundary, surface_, beside, axis));
+  displacement_ = project_to_target(surface_, facets_, vertices_on(boundary, surface_, beside.fixed),
+                                    rule.crease_angle_deg, name_, notes);
 }
 
 void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
-                             std::vector<SlipSurface> const& slides, std::vector<std::string>& notes) {
+                             BesideTarget const& beside, std::vector<std::string>& notes) {
   TargetGeometry const& target = *rule.target;
   for (PatchGrid const& grid : surface_.grids)
     if (grid.faces.empty())
@@ -170,7 +171,8 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
   if (surface_.lines) {
     for (TargetSection const& section : target.sections)
       if (!finite(section.points)) throw MotionError(name_ + ": a point of the target is not finite");
-    displacement_ = project_to_profile(surface_, target, name_, notes);
+    displacement_ = project_to_profile(surface_, target, sides_beside(boundary, surface_, beside, axis),
+                                       vertices_on(boundary, surface_, beside.fixed), name_, notes);
     return;
   }
   if (rule.mapping == Mapping::sections || !target.sections.empty()) {
@@ -178,7 +180,7 @@ void TargetMotion::map_faces(Boundary const& boundary, TargetRule const& rule, A
     map_onto_sections(boundary, rule, axis, notes);
     return;
   }
-  project(rule, slides, notes);
+  project(boundary, rule, axis, beside, notes);
 }
 
 void TargetMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> out) const {

@@ -3,9 +3,9 @@
 
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
-#include <gridmorph/geometry/slip_surface.hpp>
 #include <gridmorph/geometry/target_tree.hpp>
 #include <gridmorph/motion/motion.hpp>
+#include <gridmorph/motion/target/target_sides.hpp>
 #include <gridmorph/motion/target_reach.hpp>
 
 #include <span>
@@ -17,10 +17,9 @@ namespace gridmorph {
 class TargetMotion {
  public:
   /// Throws MotionError when the target is not usable for these patches. `name` begins its messages and notes.
-  /// `slides`: what nodes of other patches slide on; a target to project to is cut off at the planes among them that
-  /// these patches end on.
+  /// A target to project to is cut off at the sides `beside` these patches that they end on (target_sides.hpp).
   TargetMotion(Boundary const& boundary, std::vector<int> const& patches, TargetRule const& rule, Axis const& axis,
-               std::vector<SlipSurface> const& slides, std::string const& name, std::vector<std::string>& notes);
+               BesideTarget const& beside, std::string const& name, std::vector<std::string>& notes);
 
   /// The motion of another one to its target, with another share of the way.
   TargetMotion(TargetMotion const& other, double share);
@@ -38,9 +37,10 @@ class TargetMotion {
   using Mapping = TargetRule::Mapping;
 
   /// Patches of an unstructured mesh: node for node as listed, by sections, or onto the surface or profile.
-  void map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
-                 std::vector<SlipSurface> const& slides, std::vector<std::string>& notes);
-  void project(TargetRule const& rule, std::vector<SlipSurface> const& slides, std::vector<std::string>& notes);
+  void map_faces(Boundary const& boundary, TargetRule const& rule, Axis const& axis, BesideTarget const& beside,
+                 std::vector<std::string>& notes);
+  void project(Boundary const& boundary, TargetRule const& rule, Axis const& axis, BesideTarget const& beside,
+               std::vector<std::string>& notes);
   void map_onto_sections(Boundary const& boundary, TargetRule const& rule, Axis const& axis,
                          std::vector<std::string>& notes);
 

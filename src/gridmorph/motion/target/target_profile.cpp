@@ -198,16 +198,17 @@ bool map_open_lines(std::vector<Vec3> const& points, std::vector<FeatureEdge> co
 
 }  // namespace
 
-std::vector<Vec3> project_to_profile(PatchSurface const& surface, TargetGeometry const& target, std::string const& name,
-                                     std::vector<std::string>& notes) {
+std::vector<Vec3> project_to_profile(PatchSurface const& surface, TargetGeometry const& target,
+                                     std::vector<TargetSide> const& sides, std::vector<char> const& held,
+                                     std::string const& name, std::vector<std::string>& notes) {
   auto const& points = surface.points;
   auto const lines = lines_of(surface);
   auto const neighbours = feature_neighbours(points.size(), lines);
   bool const closed = std::all_of(neighbours.begin(), neighbours.end(), [](auto const& n) { return n.size() == 2; });
   double const z = points.front().z;
-  Strip const strip = make_strip(
-      target.sections.empty() ? from_facets(target, z, name) : from_sections(target, z, surface.size, closed, name),
-      surface.size);
+  Segments const profile =
+      target.sections.empty() ? from_facets(target, z, name) : from_sections(target, z, surface.size, closed, name);
+  Strip const strip = make_strip(cut_at_sides(profile, sides), surface.size);
   if (strip.profile.empty()) throw MotionError(name + ": the profile of the target is one point");
   std::vector<Vec3> image = points;
   std::string how = "from end to end";
@@ -223,6 +224,7 @@ std::vector<Vec3> project_to_profile(PatchSurface const& surface, TargetGeometry
   notes.push_back(name + ": mapped to the profile in the plane of the mesh by arc length, " + how);
   std::vector<Vec3> displacement(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
+    if (held[v] != 0 && strip.tree.closest(points[v]).distance <= held_within * surface.size) continue;
     Vec3 const u{image[v].x - points[v].x, image[v].y - points[v].y, 0};
     if (!(norm(u) <= 1e-14 * (surface.size + norm(points[v])))) displacement[v] = u;
   }

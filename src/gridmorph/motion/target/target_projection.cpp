@@ -64,7 +64,8 @@ namespace {
 
 class Projection {
  public:
-  Projection(PatchSurface const& surface, TargetTree const& target, double crease_angle_deg)
+  Projection(PatchSurface const& surface, TargetTree const& target, std::vector<char> const& held,
+             double crease_angle_deg)
       : surface_(surface),
         target_(target),
         points_(surface.points),
@@ -73,6 +74,11 @@ class Projection {
     edges_ = map_edges(points_, find_feature_edges(points_, facets_, crease_angle_deg), target,
                        find_feature_edges(target.points(), target_facets_, crease_angle_deg), surface.size,
                        rough_guess(points_, target));
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      if (held[v] == 0 || target.closest(points_[v]).distance > held_within * surface.size) continue;
+      edges_.known[v] = 1;
+      edges_.image[v] = points_[v];
+    }
   }
 
   [[nodiscard]] EdgeImages const& edges() const { return edges_; }
@@ -236,9 +242,10 @@ class Projection {
 
 }  // namespace
 
-std::vector<Vec3> project_to_target(PatchSurface const& surface, TargetTree const& target, double crease_angle_deg,
-                                    std::string const& name, std::vector<std::string>& notes) {
-  Projection projection(surface, target, crease_angle_deg);
+std::vector<Vec3> project_to_target(PatchSurface const& surface, TargetTree const& target,
+                                    std::vector<char> const& held, double crease_angle_deg, std::string const& name,
+                                    std::vector<std::string>& notes) {
+  Projection projection(surface, target, held, crease_angle_deg);
   EdgeImages const& edges = projection.edges();
   std::string note = name + ": mapped by projection, " + std::to_string(edges.mapped) + " edges to edges of the target";
   if (edges.unmapped > 0)

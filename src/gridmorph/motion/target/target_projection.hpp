@@ -16,6 +16,10 @@ namespace gridmorph {
 /// among `cuts` (smaller vertex first). Numbered in the order of their first facets. Cost O(facets log facets).
 std::vector<int> pieces_between(std::vector<GridFacet> const& facets, std::set<std::pair<int, int>> const& cuts);
 
+/// Nodes of patches that stay, and of a surface that goes to a target which passes them no farther off than this share
+/// of its size, stay.
+inline constexpr double held_within = 1e-6;
+
 /// A rough idea of where the surface goes: nowhere, or along with its bounding box when the target is clearly
 /// elsewhere.
 std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, TargetTree const& target);
@@ -26,9 +30,11 @@ std::function<Vec3(Vec3 const&)> rough_guess(std::vector<Vec3> const& points, Ta
 ///  3. what it misses on the edges is spread over each patch: corners of patches inside the surface by inverse distance
 ///     to the fourth power, then sides linearly by arc length, then transfinite interpolation (Gordon and Hall 1973);
 ///  4. every node not on an edge goes to the closest point of the target that faces the same way.
-/// A vertex that lies on the target within round-off and is asked to stay, stays exactly.
-/// Cost O(vertices (log facets + corners inside the surface)).
-std::vector<Vec3> project_to_target(PatchSurface const& surface, TargetTree const& target, double crease_angle_deg,
-                                    std::string const& name, std::vector<std::string>& notes);
+/// A vertex that lies on the target within round-off and is asked to stay, stays exactly; one of `held` (one per
+/// vertex) stays where it lies on the target to held_within of the size of the surface. Cost O(vertices (log facets +
+/// corners inside the surface)).
+std::vector<Vec3> project_to_target(PatchSurface const& surface, TargetTree const& target,
+                                    std::vector<char> const& held, double crease_angle_deg, std::string const& name,
+                                    std::vector<std::string>& notes);
 
 }  // namespace gridmorph
