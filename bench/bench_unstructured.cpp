@@ -14,6 +14,7 @@
 //   scatter       moving walls to the lattice between them
 //   background    the background mesh itself: the structured engine on some ten thousand nodes
 //   apply         all of it, from boundary displacements to new coordinates
+//   free_body     the same where a sphere amid the mesh grows in one direction; fit: by least squares
 //
 // topology, prepare and apply also on the mesh in order by position (..._in_order), and there alone:
 //   transpose     gradients of all nodes handed back to the boundary
@@ -28,6 +29,7 @@
 #include "roof.hpp"
 
 #include <generators/ball_demo.hpp>
+#include <generators/sphere.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
@@ -239,6 +241,49 @@ struct Transpose {
   }
 };
 
+/// A sphere amid a mesh in order, which grows by half in one direction; bytes of the rows and of all nodes.
+struct FreeBody {
+  NearFieldMethod method;
+
+  struct Made {
+    Mesh mesh;
+    PreparedUnstructured prepared;
+  };
+  [[nodiscard]] Made make(Index nodes) const {
+    SphereOptions sphere;
+    sphere.elements = std::max(Index(20'000), Index(double(nodes) / nodes_per_element));
+    Made out{make_sphere(sphere), {}};
+    reorder(out.mesh, order_by_position(out.mesh));
+    FunctionRule const grows{"grows", [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                               for (std::size_t n = 0; n < x.size(); ++n) u[n] = {0.5 * x[n].x, 0, 0};
+                             }};
+    Motion motion;
+    motion.rules.push_back({{"sphere"}, grows, 0, "bench"});
+    PlanOptions options;
+    options.elements.method = method;
+    UnstructuredTopology const topology = make_topology(out.mesh);
+    out.prepared = prepare(out.mesh, topology, find_face_patches(out.mesh, topology), motion, options);
+    return out;
+  }
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    using Memory = typename ExecutionSpace::memory_space;
+    static LastMade<std::pair<NearFieldMethod, Index>, Made> last;
+    Made const& made = last.get({method, state.range(0)}, [&] { return make(state.range(0)); });
+    UnstructuredPlan const& plan = made.prepared.plan;
+    NodeArrays<Memory> const baseline(made.mesh.coordinates), morphed(made.mesh.coordinates);
+    auto const morpher = MorpherAccess::of(exec, plan, baseline);
+    auto const given = made.prepared.boundary_displacement();
+    auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
+    double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
+    double const fit = 60.0 * double(plan.fit.nodes.size()) + 8.0 * double(plan.fit.nodes.item.size());
+    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows) + fit;
+    set_ball_rates(state, exec, mean, made.mesh, rows + (60 + 48 + 220) * double(made.mesh.n_nodes()));
+    if (plan.fit.nodes.size() > 0)
+      state.counters["groups per node"] = double(plan.fit.nodes.item.size()) / double(plan.fit.nodes.size());
+  }
+};
+
 /// 0.05 to 10 million elements.
 std::vector<std::int64_t> const ball_sizes{smoke_nodes, 24'000, 120'000, 480'000, 1'200'000, 2'400'000};
 
@@ -260,6 +305,8 @@ void register_all() {
   register_benchmark("unstructured/scatter", Scatter(), ball_sizes);
   register_benchmark("unstructured/background", BackgroundMesh(), ball_sizes);
   register_benchmark("unstructured/apply", Apply(), ball_sizes);
+  register_benchmark("unstructured/free_body", FreeBody{NearFieldMethod::lattice}, ball_sizes);
+  register_benchmark("unstructured/fit", FreeBody{NearFieldMethod::least_squares}, ball_sizes);
   register_host("unstructured/topology_in_order", topology<true>);
   register_host("unstructured/prepare_in_order", prepare_all<true>);
   register_benchmark("unstructured/apply_in_order", Apply{true}, ball_sizes);

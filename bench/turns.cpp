@@ -1,5 +1,5 @@
-// How shapes of elements stand what bodies do: this project, in one step and without its guard, beside thin plate
-// splines with every boundary node as a centre (thin_plate.hpp).
+// How shapes of elements stand what bodies do: this project, in one step and without its guard, by default and by least
+// squares (NearFieldMethod), beside thin plate splines with every boundary node as a centre (thin_plate.hpp).
 //
 //   bench_turns [--small] [--against FILE] [CASE ...]      all cases where none is named
 //
@@ -55,6 +55,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -87,7 +88,7 @@ Moves shifting(Vec3 const& by) {
   return [=](Vec3 const&, double amount) { return amount * by; };
 }
 
-Coordinates by_this_project(Case const& c, double amount) {
+Coordinates by_this_project(Case const& c, double amount, NearFieldMethod method) {
   Motion motion;
   for (Body const& b : c.bodies) {
     MotionRule& rule = motion.rules.emplace_back();
@@ -97,7 +98,9 @@ Coordinates by_this_project(Case const& c, double amount) {
                              }};
     rule.where = c.name;
   }
-  MorphPlan const plan(c.mesh, motion);
+  PlanOptions options;
+  options.elements.method = method;
+  MorphPlan const plan(c.mesh, motion, options);
   Coordinates x(c.mesh.n_nodes());
   apply_on_host(Morpher<Exec>(Exec(), plan, c.mesh.coordinates), plan.boundary_displacement(), x);
   return x;
@@ -322,7 +325,11 @@ std::map<std::string, std::function<Case(bool)>> all_cases() {
   return out;
 }
 
-using Row = std::pair<std::string, double>;  ///< case, amount
+using Row = std::tuple<std::string, double, std::string>;  ///< case, amount, method
+
+std::string const splines = "thin plate";
+std::vector<std::pair<std::string, NearFieldMethod>> const methods{{"gridmorph", NearFieldMethod::lattice},
+                                                                   {"least squares", NearFieldMethod::least_squares}};
 
 /// What this project had in the lines of an earlier run.
 std::map<Row, Verdict> read_earlier(char const* path) {
@@ -334,7 +341,8 @@ std::map<Row, Verdict> read_earlier(char const* path) {
     std::istringstream cells(line);
     std::string name, amount, method, smallest, inverted;
     for (std::string* cell : {&name, &amount, &method, &smallest, &inverted}) std::getline(cells, *cell, ',');
-    if (method == "gridmorph") out[{name, std::stod(amount)}] = {std::stod(smallest), std::stoll(inverted)};
+    if (method != splines && method != "method")
+      out[{name, std::stod(amount), method}] = {std::stod(smallest), std::stoll(inverted)};
   }
   if (out.empty()) throw std::runtime_error(std::string(path) + " has no lines of this project");
   return out;
@@ -346,8 +354,9 @@ bool holds(Row const& row, Verdict const& now, std::map<Row, Verdict> const& ear
   if (was == earlier.end() ||
       (now.inverted <= was->second.inverted && (now.inverted > 0 || now.smallest > was->second.smallest - 0.005)))
     return true;
-  std::fprintf(stderr, "%s by %g: smallest %.4f, %lld inverted; it was %.4f, %lld\n", row.first.c_str(), row.second,
-               now.smallest, static_cast<long long>(now.inverted), was->second.smallest,
+  auto const& [name, amount, method] = row;
+  std::fprintf(stderr, "%s by %g, %s: smallest %.4f, %lld inverted; it was %.4f, %lld\n", name.c_str(), amount,
+               method.c_str(), now.smallest, static_cast<long long>(now.inverted), was->second.smallest,
                static_cast<long long>(was->second.inverted));
   return false;
 }
@@ -359,13 +368,16 @@ bool run(Case const& c, std::map<Row, Verdict> const& earlier) {
   std::fprintf(stderr, "%s: %lld elements, %zu centres, baseline %.4f\n", c.name.c_str(),
                static_cast<long long>(c.mesh.n_elements()), spline.n_centres,
                judge(c.mesh, c.mesh.coordinates).smallest);
-  for (std::size_t a = 0; a < c.amounts.size(); ++a)
-    for (bool const ours : {true, false}) {
-      Verdict const v = judge(c.mesh, ours ? by_this_project(c, c.amounts[a]) : spline.at(a));
-      std::printf("%s,%g,%s,%.4f,%lld\n", c.name.c_str(), c.amounts[a], ours ? "gridmorph" : "thin plate", v.smallest,
+  for (std::size_t a = 0; a < c.amounts.size(); ++a) {
+    auto const report = [&](std::string const& method, Coordinates const& moved) {
+      Verdict const v = judge(c.mesh, moved);
+      std::printf("%s,%g,%s,%.4f,%lld\n", c.name.c_str(), c.amounts[a], method.c_str(), v.smallest,
                   static_cast<long long>(v.inverted));
-      if (ours) held = holds({c.name, c.amounts[a]}, v, earlier) && held;
-    }
+      return method == splines || holds({c.name, c.amounts[a], method}, v, earlier);
+    };
+    for (auto const& [name, method] : methods) held = report(name, by_this_project(c, c.amounts[a], method)) && held;
+    report(splines, spline.at(a));
+  }
   return held;
 }
 

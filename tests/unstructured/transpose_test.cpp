@@ -57,6 +57,20 @@ PlanOptions by_layers() {
   options.elements.method = NearFieldMethod::layers;
   return options;
 }
+PlanOptions by_fit(PlanOptions options) {
+  options.elements.method = NearFieldMethod::least_squares;
+  return options;
+}
+/// By half in all directions alike, but for a little.
+Rule grows(Vec3 const& centre) {
+  RigidTransform const turn = rotation_about(centre, {0, 0, 1}, 0.5);
+  return FunctionRule{"grows", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
+                        for (std::size_t n = 0; n < x.size(); ++n) {
+                          Vec3 const p = x[n] - centre;
+                          u[n] = turn(x[n] + 0.5 * p + Vec3{0.1 * p.y, 0.05 * p.x * p.x, 0}) - x[n];
+                        }
+                      }};
+}
 /// Half an annulus whose case bulges.
 double case_radius(double x) { return 2 + 0.3 * std::pow(std::sin(x), 2); }
 Mesh half_annulus() {
@@ -126,6 +140,13 @@ std::vector<Kind> kinds() {
       {"rotated", box, {moves(), slips}, with_layers(1, Mode::rotate)},
       {"blended", box, {moves(), slips}, with_layers(2, Mode::blend)},
       {"by_layers", box, {moves(), slips}, by_layers()},
+      {"by_fit", box, {moves(), rule_for({"?_min", "?_max"}, FixedRule{})}, by_fit(with_layers(1))},
+      {"by_fit_beside_what_slips", box, {moves(), slips}, by_fit(with_layers(1))},
+      {"by_fit_of_two", two_bodies, {rule_for({"body"}, bends(0.05))}, by_fit({})},
+      {"by_fit_as_it_grows",
+       [] { return airfoil(48, 3, 0.02, 1.3, 4); },
+       {rule_for({"airfoil"}, grows({0.3, 0, 0}))},
+       by_fit({})},
       {"no_columns", box, {moves()}, {}},
       {"slips_on_three_sides",
        box,

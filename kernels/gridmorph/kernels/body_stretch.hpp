@@ -8,6 +8,9 @@
 // to; q, planned, is how much of the stretch the body makes as a whole (plan/elements/body_stretch.hpp). Rigid bodies
 // have E = 0 to rounding.
 //
+// Or, where limits say so, E is what the body grows by in all directions alike: with l = w (x - c) / tr M and Pi =
+// M / tr M it is E = q tr(R^T (Pi + N) - Pi) I, in the plane where it may stretch in that alone.
+//
 // What stands on a wall keeps its distance from it there, and makes all of the stretch at the end of its column: a node
 // x of a column on w makes, besides what its column does, R E h, h = s (x - w), with a share s that grows from 0 to 1.
 //
@@ -44,14 +47,21 @@ struct StretchMap {
 
 /// How a body may stretch.
 struct StretchLimits {
-  Mat3 span;         ///< Pi
-  double share = 0;  ///< q
+  Mat3 span;          ///< Pi
+  double share = 0;   ///< q
+  bool even = false;  ///< in all directions alike
 };
 
 /// What N becomes where a body slides on a plane with the unit normal n, and stretches in it alone; n zero: what it is.
 KOKKOS_INLINE_FUNCTION StretchMap in_plane(StretchMap m, Vec3 const& n) {
   for (Vec3& c : m.column) c = c - dot(n, c) * n;
   return m;
+}
+
+/// The trace of a map times the unit one, or that of the plane with the unit normal n.
+KOKKOS_INLINE_FUNCTION StretchMap evened(StretchMap const& e, Vec3 const& n) {
+  double const trace = e.column[0].x + e.column[1].y + e.column[2].z;
+  return in_plane({{{trace, 0, 0}, {0, trace, 0}, {0, 0, trace}}}, n);
 }
 
 /// Column a of E for a body whose rotation is `whole`, from that of N.

@@ -333,7 +333,7 @@ struct StretchBodies {
     } else {
       for (int a = 0; a < 3; ++a) out.column[a] = stretched(walls.limits(b), whole, a, n.column[a]);
     }
-    stretch[b] = out;
+    stretch[b] = walls.limits(b).even ? evened(out, walls.axis(b)) : out;
   }
 };
 

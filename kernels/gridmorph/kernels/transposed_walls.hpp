@@ -301,6 +301,8 @@ struct StretchBodiesBack {
     StretchLimits const& limits = walls.limits(b);
     auto const whole = twice(half[b]);
     BodyGradient to = of[b];
+    // That of a trace is the transpose of what becomes of it: the same.
+    if (limits.even) to.stretch = evened(in_plane(to.stretch, walls.axis(b)), {});
     for (int a = 0; a < 3; ++a) {
       Vec3 const g = limits.share * to.stretch.column[a];
       // g . R^T v is R g . v.

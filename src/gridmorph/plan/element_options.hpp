@@ -15,7 +15,10 @@ struct Background;
 /// What carries the motion of the walls between the ends of their columns and the wrap.
 enum class NearFieldMethod {
   lattice,  ///< its average on an even lattice, and from layer to layer what that misses at the columns
-  layers    ///< from layer to layer the motion itself: displacement and turn
+  layers,   ///< from layer to layer the motion itself: displacement and turn
+  /// The affine motion that fits the walls around best, at the scale of their distance, for all nodes of a mesh whose
+  /// moving walls are free bodies; otherwise as `lattice`.
+  least_squares
 };
 
 /// How much each node of the layers before counts when displacements pass on.

@@ -13,6 +13,7 @@
 #include <gridmorph/plan/elements/columns.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 #include <gridmorph/plan/layers.hpp>
+#include <gridmorph/plan/least_squares_field.hpp>
 #include <gridmorph/plan/options.hpp>
 #include <gridmorph/plan/planned_elements.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -102,11 +103,15 @@ struct UnstructuredPlan {
   /// nodes of near and partially wrapped elements what it misses. By NearFieldMethod::layers there is none, and layers
   /// carry all of it.
   InverseDistanceField walls;
+  /// By NearFieldMethod::least_squares instead, for all nodes: the first rows are those of the ends of columns, where
+  /// layers begin.
+  LeastSquaresField fit;
+  Index n_fitted_ends = 0;
   /// What the smooth part is spread from besides the driving nodes, after these: nodes of other boundaries among near
   /// elements that rules move, by their places in `known`.
   std::vector<Index32> beside_slots;
   LayerRows near;
-  std::vector<float> near_fade;  ///< per row of near: share of what the smooth part misses
+  std::vector<float> near_fade;  ///< per row of near, or of fit.nodes: share of what the smooth part misses
   std::vector<float> near_turn;  ///< per row of near, by layers: share of its sources' turns that the node makes
 
   std::optional<Background> background;  ///< absent where the near field is the whole mesh

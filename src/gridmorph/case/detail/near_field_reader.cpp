@@ -48,7 +48,8 @@ void read_near_field(TableReader& root, std::map<std::string, double> const& con
       if (*offset <= 0)
         near->problem("offset", fmt::format("must be a positive length, found {}; remove it for the default", *offset));
     }
-    if (auto const method = near->choice("method", {"lattice", "layers"})) out.method = NearFieldMethod(*method);
+    if (auto const method = near->choice("method", {"lattice", "layers", "least-squares"}))
+      out.method = NearFieldMethod(*method);
     if (auto const weight = near->choice("weights", {"uniform", "inverse-distance", "quality", "curvature"}))
       out.weight = LayerWeight(*weight);
     if (auto const wrap = near->choice("wrap", {"lattice", "tube"})) out.tube = *wrap == 1;

@@ -65,8 +65,9 @@ struct BodyTurnTables {
     if (stretches()) {
       stretch_sum = room_for<kernels::StretchMap>(exec, std::size_t(walls.n_wall_chunks), name("stretch_sum"));
       stretch = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch"));
-      columns = {columns_of_walls(exec, plan), upload(exec, plan.columns.node, name("columns")),
-                 upload(exec, plan.turns_of_bodies.column_arm, name("column_arm")), walls.limits};
+      if (!plan.turns_of_bodies.limits.front().even)
+        columns = {columns_of_walls(exec, plan), upload(exec, plan.columns.node, name("columns")),
+                   upload(exec, plan.turns_of_bodies.column_arm, name("column_arm")), walls.limits};
       if (with_rate) {
         stretch_sum_rate = room_for<kernels::StretchMap>(exec, stretch_sum.extent(0), name("stretch_sum_rate"));
         stretch_rate = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch_rate"));

@@ -8,6 +8,7 @@
 #include <gridmorph/morph/stages/far_field.hpp>
 #include <gridmorph/morph/stages/middle_nodes.hpp>
 #include <gridmorph/morph/stages/near_field.hpp>
+#include <gridmorph/morph/stages/near_fit.hpp>
 #include <gridmorph/morph/stages/near_layers.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
 #include <gridmorph/morph/stages/run_stages.hpp>
@@ -25,9 +26,9 @@ namespace gridmorph::stages {
 
 template <class Exec>
 using ElementStage =
-    std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, FarField<Exec>, AddTurns<Exec>,
-                 StartResidual<Exec>, AskBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>, GoAlong<Exec>,
-                 SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
+    std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, NearFit<Exec>, FarField<Exec>,
+                 AddTurns<Exec>, StartResidual<Exec>, AskBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>,
+                 GoAlong<Exec>, SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
 
 /// The stages of a plan without parts.
 template <class Exec>
@@ -44,7 +45,9 @@ struct ElementStages {
       turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, velocity, back != nullptr);
       walls.emplace_back(TakeTurns<Exec>(turns));
     }
-    if (plan.walls.empty())
+    if (!plan.fit.empty())
+      walls.emplace_back(NearFit<Exec>(exec, plan, back));
+    else if (plan.walls.empty())
       walls.emplace_back(NearLayers<Exec>(exec, plan, back));
     else
       walls.emplace_back(NearField<Exec>(exec, plan, back));

@@ -16,12 +16,17 @@ namespace gridmorph {
 /// thickens a plate moves little, and must not move all around it. By measurement on an airfoil and an ellipsoid
 /// (docs/unstructured.md).
 ///
+/// Evenly: what the body grows by in all directions alike, where that is nearly all that is left (t = (e - 0.8) /
+/// 0.15): least squares carry the rest, but would let elements around a body that grows become flat.
+///
 /// Calls in this order: add_place() for all wall nodes, settle(), add_displacement() for all, fit(), add_rest() for
 /// all, decide(). w: their shares in the area of the body; arms: from its centre.
 class BodyStretch {
  public:
   /// axis: that about which alone the body may turn, whose planes it stretches in; zero: any. whole: its rotation.
-  BodyStretch(Vec3 const& axis, kernels::Quaternion<Vec3> const& whole) : axis_(axis), whole_(whole) {}
+  BodyStretch(Vec3 const& axis, kernels::Quaternion<Vec3> const& whole, bool evenly) : axis_(axis), whole_(whole) {
+    limits_.even = evenly;
+  }
 
   void add_place(double w, Vec3 const& arm);
   void settle();

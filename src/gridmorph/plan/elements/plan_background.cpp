@@ -14,7 +14,7 @@ namespace gridmorph::detail {
 void UnstructuredPlanner::plan_background() {
   UnstructuredPlan& plan = out_.plan;
   if (!plan.background) {
-    if (out_.report.regions.n_far == 0 || driving_faces_.empty()) return;
+    if (fitted_ || out_.report.regions.n_far == 0 || driving_faces_.empty()) return;
     take_background(make_background(*out_.report.wrap, options_.elements.cells));
   }
   plan_outer_box();

@@ -78,7 +78,11 @@ void UnstructuredPlanner::find_columns() {
   columns_ = make_columns(mesh_, topology_, out_.graph, driving_faces_, extents, is_known_);
   find_wall_lines();
   out_.report.n_columns = std::count_if(columns_.height.begin(), columns_.height.end(), [](double h) { return h > 0; });
-  columns_ = cut(columns_, smooth_ends(out_.graph, columns_, most_heights(), longest_where_walls_bend()));
+  ColumnEnds const ends =
+      smooth_ends(out_.graph, columns_, most_heights(), fitted_ ? longest_by_edges() : longest_where_walls_bend());
+  // By least squares lines that lean beside sharp edges end by their length, whatever they rise.
+  columns_ = cut(columns_, fitted_ ? ColumnEnds{ends.height, std::vector<double>(ends.rise.size(), 0)} : ends);
+  columns_.full_rise = ends.rise;
   for (double const h : columns_.full_rise) out_.report.layer_height = std::max(out_.report.layer_height, h);
   plan_columns();
   if (!driving_faces_.empty()) find_held_columns();
@@ -147,6 +151,24 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
         l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
       for (Index32 const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
   return most;
+}
+
+std::vector<double> UnstructuredPlanner::longest_by_edges() const {
+  // By measurement on an airfoil and an ellipsoid (bench_turns): what is farther from the wall least squares carry
+  // better.
+  constexpr double of_edge = 0.5;
+  std::vector<double> out(std::size_t(mesh_.n_nodes()), infinity);
+  for (Index32 const f : driving_faces_) {
+    auto const face = topology_.boundary.nodes[f];
+    int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
+    if (l >= 0 && is_given(options_.boundary_layers[std::size_t(l)])) continue;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      Index32 const a = owner(face[k]), b = owner(face[(k + 1) % face.size()]);
+      double const longest = of_edge * distance(mesh_.coordinates[a], mesh_.coordinates[b]);
+      for (Index32 const n : {a, b}) out[std::size_t(n)] = std::min(out[std::size_t(n)], longest);
+    }
+  }
+  return out;
 }
 
 std::vector<double> UnstructuredPlanner::longest_where_walls_bend() const {

@@ -100,6 +100,7 @@ void UnstructuredPlanner::measure_columns() {
 void UnstructuredPlanner::plan_layers() {
   measure_columns();
   UnstructuredPlan& plan = out_.plan;
+  if (fitted_) return plan_fit();
   Mask seeds = drives_;
   for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
   Mask wanted = near_;
@@ -108,7 +109,7 @@ void UnstructuredPlanner::plan_layers() {
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
   out_.report.n_layers = plan.near.n_layers();
-  if (options_.elements.method == NearFieldMethod::lattice && !driving_faces_.empty())
+  if (options_.elements.method != NearFieldMethod::layers && !driving_faces_.empty())
     plan_smooth_walls();
   else
     plan_layer_turns();
@@ -127,6 +128,50 @@ void UnstructuredPlanner::plan_layers() {
         std::to_string(out_.report.unreached) +
         " nodes lie in the wrap but are joined to no moving wall by edges of elements; they follow the other "
         "boundaries alone");
+}
+
+void UnstructuredPlanner::plan_fit() {
+  UnstructuredPlan& plan = out_.plan;
+  auto const& all = plan.turns_of_bodies;
+  auto const n_nodes = std::size_t(mesh_.n_nodes());
+  constexpr double reach = 3;  // of the height of the column below
+  auto const fade = [&](std::size_t n) {
+    Index32 const wall = from_wall_.source[n];
+    double const height = wall < 0 ? 0 : column_reach_[std::size_t(wall)];
+    if (!(height > 0)) return 0.0;
+    double const s = std::min(1.0, beyond_column(n) / (reach * height));
+    return 1 - s * s * (3 - 2 * s);
+  };
+  Mask ends = mask(), wanted = mask();
+  for (Index32 const n : columns_.node) ends[std::size_t(n)] = 1;
+  auto const is_moved = [&](std::size_t n) {
+    return drives_[n] == 0 && out_.graph.carries(Index32(n)) && !out_.graph.neighbours[Index32(n)].empty();
+  };
+  for (std::size_t n = 0; n < n_nodes; ++n) wanted[n] = ends[n] == 0 && is_moved(n) && fade(n) > 0 ? 1 : 0;
+  plan.near = make_layers(host_, out_.graph, mesh_.coordinates, ends, wanted, from_wall_.distance, layer_weight());
+  out_.report.n_layers = plan.near.n_layers();
+  // Only the ends of columns are where layers begin.
+  Mask begins = mask(), passes = mask();
+  for (Index32 const n : plan.near.rows.item) begins[std::size_t(n)] = ends[std::size_t(n)];
+  for (Index32 const n : plan.near.rows.target) passes[std::size_t(n)] = 1;
+  double const nearest = 1e-14 * mesh_.size();
+  std::vector<FieldReader> readers;
+  auto const add = [&](Index32 n, double share) {
+    readers.push_back({n, std::max(nearest, from_wall_.distance[std::size_t(n)]), share});
+  };
+  for (Index32 const n : columns_.node)
+    if (begins[std::size_t(n)] != 0) add(n, 1);
+  plan.n_fitted_ends = Index(readers.size());
+  plan.near_fade.assign(readers.size(), 0);
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    if (ends[n] != 0 || !is_moved(n) || !std::isfinite(from_wall_.distance[n])) continue;
+    double share = 0;
+    for (Index b = 0; b < all.size(); ++b) share += all.shift_share[std::size_t(b) * n_nodes + n];
+    if (!(share > 0)) continue;
+    add(Index32(n), std::min(1.0, share));
+    plan.near_fade.push_back(passes[n] != 0 ? float(fade(n)) : 0);
+  }
+  plan.fit = make_least_squares_field(host_, mesh_.coordinates, plan.driving, areas(plan.driving), readers);
 }
 
 void UnstructuredPlanner::plan_smooth_walls() {

@@ -82,7 +82,9 @@ double UnstructuredPlanner::offset() {
 }
 
 void UnstructuredPlanner::find_regions() {
-  if (options_.elements.background)
+  if (fitted_) {
+    classify_by_distance();
+  } else if (options_.elements.background)
     classify_by_background();
   else
     classify_by_wrap();
@@ -91,6 +93,24 @@ void UnstructuredPlanner::find_regions() {
     if (out_.report.regions.near[std::size_t(n)]) near_[std::size_t(owner(n))] = 1;
   // Columns are kept whole, wherever the wrap ends.
   for (Index32 const n : columns_.node) near_[std::size_t(n)] = 1;
+}
+
+void UnstructuredPlanner::classify_by_distance() {
+  out_.report.offset = offset();
+  auto& regions = out_.report.regions;
+  regions.inside = regions.near = mask();
+  for (std::size_t n = 0; n < regions.inside.size(); ++n)
+    regions.inside[n] = from_wall_.distance[n] < out_.report.offset ? 1 : 0;
+  regions.element.assign(std::size_t(mesh_.n_elements()), Region::far);
+  for (Index e = 0; e < mesh_.n_elements(); ++e) {
+    auto const corners = mesh_.elements.corners(e);
+    auto const n = std::count_if(corners.begin(), corners.end(),
+                                 [&](Index32 c) { return regions.inside[std::size_t(owner(c))] != 0; });
+    if (n == 0) continue;
+    regions.element[std::size_t(e)] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
+    for (Index32 const c : mesh_.elements.nodes[e]) regions.near[std::size_t(c)] = 1;
+  }
+  regions.count();
 }
 
 void UnstructuredPlanner::classify_by_wrap() {

@@ -61,6 +61,10 @@ void UnstructuredPlanner::find_turning_bodies() {
   wall_bodies_.bodies = std::move(turning);
   for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
   if (wall_bodies_.bodies.empty()) return;
+  std::size_t n_turning = 0;
+  for (WallBody const& body : wall_bodies_.bodies) n_turning += body.nodes.size();
+  fitted_ = options_.elements.method == NearFieldMethod::least_squares && !options_.elements.background &&
+            n_turning == out_.plan.driving.size() && out_.boundary.images.empty();
   add_other_boundaries();
   plan_stretches();
 }
@@ -204,7 +208,7 @@ BodyStretch UnstructuredPlanner::stretch_of(std::size_t body, std::size_t first,
     for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
       s.add(all.weight[k] * e, e + turn[std::size_t(all.wall[k])].turned(e));
   }
-  BodyStretch out(all.axis[body], kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[body])));
+  BodyStretch out(all.axis[body], kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[body])), fitted_);
   for (std::size_t k = first; k < end; ++k) out.add_place(all.weight[k], arm_in_body(body, k));
   out.settle();
   for (std::size_t k = first; k < end; ++k) {
@@ -246,7 +250,7 @@ void UnstructuredPlanner::plan_turns() {
       body_of[std::size_t(columns_.node[k])] = b;
       all.rigid.push_back(columns_.node[k]);
     }
-  if (!all.lever.empty()) all.column_arm = stretched_arms();
+  if (!all.lever.empty() && !fitted_) all.column_arm = stretched_arms();
   // Beyond three passages what turns is out of sight, on meshes whose sides go along with the flow too.
   moves_ = periodic_moves(host_, mesh_, out_.graph, out_.boundary, 3);
   for (RigidTransform const& move : moves_)

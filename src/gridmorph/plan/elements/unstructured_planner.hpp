@@ -112,6 +112,9 @@ class UnstructuredPlanner {
   /// to show, a few of their cells. Alike whatever the size of the motion. What bodies stretch by as wholes does not
   /// count. Empty where no shape of the motion is known, or the case file says how far columns go.
   [[nodiscard]] std::vector<double> longest_where_walls_bend() const;
+  /// How long columns may be below least squares (n_nodes): half the shortest edge of the wall there, unless the case
+  /// file says how far they go.
+  [[nodiscard]] std::vector<double> longest_by_edges() const;
   /// About the spacing of the lattice of the near field around a body.
   [[nodiscard]] double lattice_spacing(WallBody const& body) const;
   /// Finds the directions of the columns on driving nodes, before columns are cut.
@@ -171,6 +174,8 @@ class UnstructuredPlanner {
   double offset();
   void find_regions();
   void classify_by_wrap();
+  /// Least squares have no wrap: near is what lies within the offset that it would have.
+  void classify_by_distance();
   /// Classifies elements by the user's background mesh, which says where the wrap is; the moving walls must be in it.
   void classify_by_background();
   void take_background(Background background);
@@ -184,6 +189,9 @@ class UnstructuredPlanner {
   /// passage that follow its blade: were the near field to learn of them from the residual alone, it would be torn
   /// where they meet the wall.
   [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
+  /// Plans the walls' motion by least squares, for all nodes; what that misses at the ends of columns fades over three
+  /// times their height.
+  void plan_fit();
   /// Plans how turns are passed on by layers: they fade from the ends of the columns on.
   void plan_layer_turns();
   /// Finds how far from each wall node what stands on walls reaches; at sharp edges columns lean, and rise by little.
@@ -238,6 +246,7 @@ class UnstructuredPlanner {
   Mask is_middle_;  ///< further nodes of second-order elements, which have no part in what follows
   NearestSource from_wall_, from_other_;
   NearestSource from_given_;  ///< boundaries beyond the moving walls that a rule displaces, and their columns
+  bool fitted_ = false;       ///< whether least squares carry the walls' motion
   double gap_ = infinity;     ///< smallest one between moving walls and other boundaries
   double reach_ = 0;          ///< largest displacement that columns reckon with
   double rest_reach_ = 0;     ///< largest one that the wrap carries

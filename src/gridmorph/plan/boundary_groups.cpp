@@ -1,0 +1,122 @@
+#include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/kernels/symmetric_eigen.hpp>
+#include <gridmorph/plan/boundary_groups.hpp>
+#include <gridmorph/plan/place_order.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr Index32 leaf_size = 4;
+
+}  // namespace
+
+BoundaryGroups::BoundaryGroups(Coordinates const& x, std::vector<Index32> const& nodes, std::vector<double> const& area,
+                               double leaf_radius, Along along)
+    : x_(x), nodes_(nodes), area_(area), leaf_radius_(leaf_radius), along_(along), order_(nodes.size()) {
+  std::iota(order_.begin(), order_.end(), Index32(0));
+  PlaceOrder const is_before(x, along == Along::coordinates ? 1.13e-3 : 1.13e-6);
+  std::sort(order_.begin(), order_.end(),
+            [&](Index32 a, Index32 b) { return is_before(nodes_[std::size_t(a)], nodes_[std::size_t(b)]); });
+  step_ = is_before.step();
+  place_.resize(order_.size());
+  steps_.resize(order_.size());
+  key_.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    place_[std::size_t(order_[k])] = Index32(k);
+    steps_[k] = is_before.steps(x[nodes[k]]);
+  }
+  if (!nodes.empty()) make(0, Index32(nodes.size()));
+}
+
+Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
+  Index32 const g = Index32(groups.size());
+  groups.emplace_back();
+  Group group;
+  group.begin = begin;
+  group.end = end;
+  Box box;
+  Vec3 sum;
+  for (Index32 k = begin; k < end; ++k) {
+    Vec3 const p = x_[node(k)];
+    box.include(p);
+    sum += area(k) * p;
+    group.area += area(k);
+  }
+  group.centre = (1 / group.area) * sum;
+  for (Index32 k = begin; k < end; ++k) {
+    Vec3 const arm = x_[node(k)] - group.centre;
+    group.radius = std::max(group.radius, norm(arm));
+    double const c[3] = {arm.x, arm.y, arm.z}, share = area(k) / group.area;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) group.moments[i][j] += share * c[i] * c[j];
+  }
+  if (end - begin > leaf_size || (end - begin > 1 && group.radius > leaf_radius_)) {
+    halve(group, box.high - box.low);
+    Index32 const middle = (begin + end) / 2;
+    group.part[0] = make(begin, middle);
+    group.part[1] = make(middle, end);
+    group.height = 1 + std::max(groups[std::size_t(group.part[0])].height, groups[std::size_t(group.part[1])].height);
+  }
+  groups[std::size_t(g)] = group;
+  return g;
+}
+
+void BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
+  // Extents that are the same but for round-off: the first axis.
+  double const slack = step_;
+  std::size_t const axis =
+      extent.x + slack >= extent.y ? (extent.x + slack >= extent.z ? 0 : 2) : (extent.y + slack >= extent.z ? 1 : 2);
+  Vec3 across;
+  if (along_ == Along::principal_axes) {
+    double moments[3][3], v[3][3];
+    std::copy_n(&group.moments[0][0], 9, &moments[0][0]);
+    kernels::diagonalise(moments, v);
+    int first = 0;
+    for (int k = 1; k < 3; ++k)
+      if (moments[k][k] > moments[first][first]) first = k;
+    double const next = std::max(moments[(first + 1) % 3][(first + 1) % 3], moments[(first + 2) % 3][(first + 2) % 3]);
+    if (next < (1 - 1e-3) * moments[first][first]) across = {v[first][0], v[first][1], v[first][2]};
+  }
+  bool const is_turned = norm(across) > 0;
+  for (Index32 k = group.begin; k < group.end; ++k) {
+    auto const n = std::size_t(order_[std::size_t(k)]);
+    key_[n] = is_turned ? std::int64_t(std::floor(dot(x_[nodes_[n]] - group.centre, across) / step_ + 0.3819))
+                        : steps_[n][axis];
+  }
+  std::nth_element(order_.begin() + group.begin, order_.begin() + (group.begin + group.end) / 2,
+                   order_.begin() + group.end, [&](Index32 a, Index32 b) {
+                     auto const s = key_[std::size_t(a)], t = key_[std::size_t(b)];
+                     return s < t || (s == t && place_[std::size_t(a)] < place_[std::size_t(b)]);
+                   });
+}
+
+void BoundaryGroups::add_rows(InterpolationOperator& leaves, LayerRows& rows) const {
+  std::vector<Index32> items;
+  std::vector<double> weights;
+  std::vector<std::vector<Index32>> by_height(std::size_t(groups.front().height) + 1);
+  for (std::size_t g = 0; g < groups.size(); ++g) by_height[std::size_t(groups[g].height)].push_back(Index32(g));
+  for (Index32 const g : by_height[0]) {
+    items.clear();
+    weights.clear();
+    for (Index32 k = groups[std::size_t(g)].begin; k < groups[std::size_t(g)].end; ++k) {
+      items.push_back(item(k));
+      weights.push_back(area(k));
+    }
+    leaves.add(g, items, weights);
+  }
+  for (std::size_t h = 1; h < by_height.size(); ++h) {
+    for (Index32 const g : by_height[h]) {
+      Group const& group = groups[std::size_t(g)];
+      double const parts[2] = {groups[std::size_t(group.part[0])].area, groups[std::size_t(group.part[1])].area};
+      rows.rows.add(g, group.part, parts);
+    }
+    rows.level.push_back(rows.rows.size());
+  }
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,152 @@
+#include <gridmorph/core/for_all.hpp>
+#include <gridmorph/geometry/smoothstep.hpp>
+#include <gridmorph/plan/boundary_groups.hpp>
+#include <gridmorph/plan/least_squares_field.hpp>
+#include <gridmorph/plan/make_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gridmorph {
+
+namespace {
+
+constexpr double order = 5;  // p
+/// Radius over distance up to which a group counts as one; no ratio of lengths in a lattice, as round-off would break
+/// such ties.
+constexpr double opening = 0.1517;
+/// What weighs less than this share of the nearest does not count.
+constexpr double least_weight = 1e-3;
+
+/// Means of places and of their products, as the rows of the field make them.
+struct PlaceMoments {
+  Vec3 x;
+  double xx[6] = {};  ///< xx, yy, zz, xy, yz, zx
+
+  static PlaceMoments of(Vec3 const& p) {
+    return {p, {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x}};
+  }
+  void add(double w, PlaceMoments const& b) {
+    x += w * b.x;
+    for (int k = 0; k < 6; ++k) xx[k] += w * b.xx[k];
+  }
+};
+
+/// With the weights that kernels have.
+template <class Source>
+PlaceMoments mean_of_row(InterpolationOperator const& rows, Index r, Source const& source) {
+  Index const from = rows.first[std::size_t(r)], to = rows.first[std::size_t(r) + 1];
+  PlaceMoments sum;
+  double rest = 1;
+  for (Index k = from + 1; k < to; ++k) {
+    double const w = rows.weight[std::size_t(k)];
+    rest -= w;
+    sum.add(w, source(rows.item[std::size_t(k)]));
+  }
+  sum.add(rest, source(rows.item[std::size_t(from)]));
+  return sum;
+}
+
+/// (C + m I)^-1 v, C being the symmetric matrix of second moments about the mean.
+Vec3 solved(PlaceMoments const& of, double m, Vec3 const& v) {
+  double const xx = of.xx[0] - of.x.x * of.x.x + m, yy = of.xx[1] - of.x.y * of.x.y + m,
+               zz = of.xx[2] - of.x.z * of.x.z + m, xy = of.xx[3] - of.x.x * of.x.y, yz = of.xx[4] - of.x.y * of.x.z,
+               zx = of.xx[5] - of.x.z * of.x.x;
+  double const a = yy * zz - yz * yz, b = yz * zx - xy * zz, c = xy * yz - yy * zx;
+  double const d = xx * zz - zx * zx, e = xy * zx - xx * yz, f = xx * yy - xy * xy;
+  double const det = xx * a + xy * b + zx * c;
+  return (1 / det) * Vec3{a * v.x + b * v.y + c * v.z, b * v.x + d * v.y + e * v.z, c * v.x + e * v.y + f * v.z};
+}
+
+/// What the mean of 1 / r^5 over a group is of that at its centre, at the distance d, to second order.
+double spread(BoundaryGroups::Group const& group, Vec3 const& x, double d) {
+  Vec3 const n = (1 / d) * (x - group.centre);
+  double const c[3] = {n.x, n.y, n.z};
+  double along = 0, all = 0;
+  for (int i = 0; i < 3; ++i) {
+    all += group.moments[i][i];
+    for (int j = 0; j < 3; ++j) along += c[i] * group.moments[i][j] * c[j];
+  }
+  return 1 + 0.5 * order * ((order + 2) * along - all) / (d * d);
+}
+
+}  // namespace
+
+LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
+                                           std::vector<Index32> const& walls, std::vector<double> const& area,
+                                           std::vector<FieldReader> const& readers) {
+  LeastSquaresField out;
+  if (walls.empty()) return out;
+  BoundaryGroups const tree(coordinates, walls, area, 0, BoundaryGroups::Along::principal_axes);
+  out.n_groups = Index32(tree.groups.size());
+  tree.add_rows(out.leaves, out.groups);
+  out.origin = tree.groups.front().centre;
+
+  struct Room {
+    std::vector<std::pair<Index32, double>> open;  ///< groups, and how much of them counts
+    std::vector<Index32> items;
+    std::vector<double> weights;
+  };
+  out.nodes = make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
+                        [&, room = Room()](Index r, InterpolationOperator& rows) mutable {
+                          FieldReader const& reader = readers[std::size_t(r)];
+                          Vec3 const x = coordinates[reader.node];
+                          room.items.clear();
+                          room.weights.clear();
+                          room.open.assign(1, {0, 1.0});
+                          double largest = 0;
+                          while (!room.open.empty()) {
+                            auto const [g, part] = room.open.back();
+                            room.open.pop_back();
+                            auto const& group = tree.groups[std::size_t(g)];
+                            double const d = std::max(distance(x, group.centre), reader.distance);
+                            // Lengths may be tiny: only ratios of weights count.
+                            double const near = reader.distance / d;
+                            double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
+                            double const wide = group.radius / d;
+                            if (wide < 0.3 && weight < least_weight * largest) continue;
+                            double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
+                            if (opened > 0) {
+                              room.open.emplace_back(group.part[1], part * opened);
+                              room.open.emplace_back(group.part[0], part * opened);
+                            }
+                            weight *= 1 - opened;
+                            if (!(weight > least_weight * largest)) continue;
+                            largest = std::max(largest, weight);
+                            room.items.push_back(g);
+                            room.weights.push_back(weight);
+                          }
+                          std::size_t kept = 0;
+                          for (std::size_t k = 0; k < room.items.size(); ++k) {
+                            if (room.weights[k] < least_weight * largest) continue;
+                            room.items[kept] = room.items[k];
+                            room.weights[kept++] = room.weights[k] / largest;
+                          }
+                          rows.add(reader.node, std::span(room.items).first(kept), std::span(room.weights).first(kept));
+                        });
+
+  // With the weights as they are rounded, so that common motions are exact.
+  std::vector<PlaceMoments> moment(tree.groups.size());
+  for (Index r = 0; r < out.leaves.size(); ++r)
+    moment[std::size_t(out.leaves.target[std::size_t(r)])] = mean_of_row(
+        out.leaves, r, [&](Index32 k) { return PlaceMoments::of(coordinates[walls[std::size_t(k)]] - out.origin); });
+  auto const of_group = [&](Index32 g) { return moment[std::size_t(g)]; };
+  for (Index r = 0; r < out.groups.rows.size(); ++r)
+    moment[std::size_t(out.groups.rows.target[std::size_t(r)])] = mean_of_row(out.groups.rows, r, of_group);
+  out.lean.resize(readers.size());
+  out.level.resize(readers.size());
+  out.room.resize(readers.size());
+  detail::for_all(host, "gridmorph::least_squares", std::ssize(readers), [&](Index at) {
+    auto const r = std::size_t(at);
+    PlaceMoments const around = mean_of_row(out.nodes, at, of_group);
+    double const m = readers[r].distance * readers[r].distance;
+    Vec3 const x = coordinates[readers[r].node] - out.origin;
+    out.lean[r] = readers[r].share * solved(around, m, x - around.x);
+    out.level[r] = readers[r].share - dot(around.x, out.lean[r]);
+    out.room[r] = m;
+  });
+  return out;
+}
+
+}  // namespace gridmorph
