@@ -56,8 +56,7 @@ Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
       for (int j = 0; j < 3; ++j) group.moments[i][j] += share * c[i] * c[j];
   }
   if (end - begin > leaf_size || (end - begin > 1 && group.radius > leaf_radius_)) {
-    halve(group, box.high - box.low);
-    Index32 const middle = (begin + end) / 2;
+    Index32 const middle = halve(group, box.high - box.low);
     group.part[0] = make(begin, middle);
     group.part[1] = make(middle, end);
     group.height = 1 + std::max(groups[std::size_t(group.part[0])].height, groups[std::size_t(group.part[1])].height);
@@ -66,7 +65,7 @@ Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
   return g;
 }
 
-void BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
+Index32 BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
   // Extents that are the same but for round-off: the first axis.
   double const slack = step_;
   std::size_t const axis =
@@ -81,6 +80,15 @@ void BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
       if (moments[k][k] > moments[first][first]) first = k;
     double const next = std::max(moments[(first + 1) % 3][(first + 1) % 3], moments[(first + 2) % 3][(first + 2) % 3]);
     if (next < (1 - 1e-3) * moments[first][first]) across = {v[first][0], v[first][1], v[first][2]};
+    // Eigenvectors have no sense: towards the side that reaches farther, where there is one.
+    double reach = 0, whole = 0;
+    for (Index32 k = group.begin; k < group.end; ++k) {
+      double const at = dot(x_[node(k)] - group.centre, across), cubed = area(k) * at * at * at;
+      reach += cubed;
+      whole += std::abs(cubed);
+    }
+    if (std::abs(reach) < 1e-6 * whole) reach = dot(across, {1, 0.618, 0.382});
+    if (reach < 0) across = -across;
   }
   bool const is_turned = norm(across) > 0;
   for (Index32 k = group.begin; k < group.end; ++k) {
@@ -88,11 +96,23 @@ void BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
     key_[n] = is_turned ? std::int64_t(std::floor(dot(x_[nodes_[n]] - group.centre, across) / step_ + 0.3819))
                         : steps_[n][axis];
   }
-  std::nth_element(order_.begin() + group.begin, order_.begin() + (group.begin + group.end) / 2,
-                   order_.begin() + group.end, [&](Index32 a, Index32 b) {
+  Index32 middle = (group.begin + group.end) / 2;
+  std::nth_element(order_.begin() + group.begin, order_.begin() + middle, order_.begin() + group.end,
+                   [&](Index32 a, Index32 b) {
                      auto const s = key_[std::size_t(a)], t = key_[std::size_t(b)];
                      return s < t || (s == t && place_[std::size_t(a)] < place_[std::size_t(b)]);
                    });
+  if (!is_turned) return middle;
+  // Those with the median's key to one side of it, the one that leaves halves more alike, where both have nodes.
+  auto const median = key_[std::size_t(order_[std::size_t(middle)])];
+  auto const begin = order_.begin() + group.begin, end = order_.begin() + group.end;
+  auto const below =
+      Index32(std::partition(begin, end, [&](Index32 n) { return key_[std::size_t(n)] < median; }) - order_.begin());
+  auto const upto =
+      Index32(std::partition(order_.begin() + below, end, [&](Index32 n) { return key_[std::size_t(n)] == median; }) -
+              order_.begin());
+  bool const lower = below > group.begin && (upto >= group.end || middle - below <= upto - middle);
+  return lower ? below : upto < group.end ? upto : middle;
 }
 
 void BoundaryGroups::add_rows(InterpolationOperator& leaves, LayerRows& rows) const {

@@ -27,7 +27,7 @@ class BoundaryGroups {
   };
 
   /// Where groups are halved: across the coordinate along which they are longest, in steps of a thousandth of the mesh;
-  /// or across their longest principal axis, in steps of a millionth, so that groups turn with the mesh: where two axes
+  /// or across their longest principal axis, in steps of a millionth, so that groups turn with the mesh; where two axes
   /// are alike to a thousandth, across a coordinate.
   enum class Along { coordinates, principal_axes };
 
@@ -43,8 +43,9 @@ class BoundaryGroups {
 
  private:
   Index32 make(Index32 begin, Index32 end);
-  /// Brings the nodes of a group in an order of which the first half becomes one part.
-  void halve(Group const& group, Vec3 const& extent);
+  /// Brings the nodes of a group in an order, and returns where the second part begins. Along principal axes nodes that
+  /// are equally far along them stay together, so that mirrored meshes have mirrored groups.
+  Index32 halve(Group const& group, Vec3 const& extent);
   [[nodiscard]] Index32 item(Index32 k) const { return order_[std::size_t(k)]; }
   [[nodiscard]] Index32 node(Index32 k) const { return nodes_[std::size_t(order_[std::size_t(k)])]; }
   [[nodiscard]] double area(Index32 k) const { return area_[std::size_t(order_[std::size_t(k)])]; }
