@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace gridmorph::test {
@@ -75,6 +76,8 @@ TEST(NearFit, WallsThatEndOnBoundariesGoByTheLattice) {
                          by_fit());
   EXPECT_FALSE(m.prepared.plan.walls.empty());
   EXPECT_TRUE(m.prepared.plan.fit.empty());
+  EXPECT_TRUE(std::any_of(m.prepared.notes.begin(), m.prepared.notes.end(),
+                          [](std::string const& n) { return n.find("in place of least squares") != n.npos; }));
 }
 
 /// What a field makes of the motion of walls around a point at rest, at all its readers.

@@ -60,11 +60,18 @@ void UnstructuredPlanner::find_turning_bodies() {
   }
   wall_bodies_.bodies = std::move(turning);
   for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
+  if (options_.elements.method == NearFieldMethod::least_squares && !driving_faces_.empty()) {
+    std::size_t n_turning = 0;
+    for (WallBody const& body : wall_bodies_.bodies) n_turning += body.nodes.size();
+    char const* const why = options_.elements.background            ? "there is a background mesh of your own"
+                            : n_turning != out_.plan.driving.size() ? "not all moving walls are bodies that turn freely"
+                            : !out_.boundary.images.empty()         ? "the mesh has periodic connections"
+                                                                    : nullptr;
+    fitted_ = why == nullptr;
+    if (!fitted_)
+      out_.notes.push_back(std::string("near field: by the lattice in place of least squares, since ") + why);
+  }
   if (wall_bodies_.bodies.empty()) return;
-  std::size_t n_turning = 0;
-  for (WallBody const& body : wall_bodies_.bodies) n_turning += body.nodes.size();
-  fitted_ = options_.elements.method == NearFieldMethod::least_squares && !options_.elements.background &&
-            n_turning == out_.plan.driving.size() && out_.boundary.images.empty();
   add_other_boundaries();
   plan_stretches();
 }
