@@ -205,21 +205,29 @@ struct BackgroundMesh {
   }
 };
 
+/// Times what a plan makes of its boundary displacements; `bytes`: of its rows.
+template <class ExecutionSpace>
+void time_apply(ExecutionSpace const& exec, benchmark::State& state, Mesh const& mesh,
+                PreparedUnstructured const& prepared, double bytes) {
+  using Memory = typename ExecutionSpace::memory_space;
+  NodeArrays<Memory> const baseline(mesh.coordinates), morphed(mesh.coordinates);
+  auto const morpher = MorpherAccess::of(exec, prepared.plan, baseline);
+  auto const given = prepared.boundary_displacement();
+  auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
+  double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
+  set_ball_rates(state, exec, mean, mesh, bytes + (60 + 48 + 220) * double(mesh.n_nodes()));
+}
+double bytes_of_rows(UnstructuredPlan const& plan) {
+  return bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
+}
+
 struct Apply {
   bool in_order = false;
 
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    using Memory = typename ExecutionSpace::memory_space;
     BallCase const& ball = ball_case(state.range(0), in_order);
-    UnstructuredPlan const& plan = ball.plan();
-    NodeArrays<Memory> const baseline(ball.mesh.coordinates), morphed(ball.mesh.coordinates);
-    auto const morpher = MorpherAccess::of(exec, plan, baseline);
-    auto const given = ball.prepared().boundary_displacement();
-    auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
-    double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
-    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
-    set_ball_rates(state, exec, mean, ball.mesh, rows + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
+    time_apply(exec, state, ball.mesh, ball.prepared(), bytes_of_rows(ball.plan()));
   }
 };
 
@@ -236,8 +244,7 @@ struct Transpose {
     auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
     auto const out = Kokkos::create_mirror(Memory(), boundary);
     double const mean = time_iterations(state, exec, [&] { morpher.transpose(exec, boundary, baseline, out); });
-    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows);
-    set_ball_rates(state, exec, mean, ball.mesh, rows + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
+    set_ball_rates(state, exec, mean, ball.mesh, bytes_of_rows(plan) + (60 + 48 + 220) * double(ball.mesh.n_nodes()));
   }
 };
 
@@ -267,18 +274,11 @@ struct FreeBody {
   }
   template <class ExecutionSpace>
   void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
-    using Memory = typename ExecutionSpace::memory_space;
     static LastMade<std::pair<NearFieldMethod, Index>, Made> last;
     Made const& made = last.get({method, state.range(0)}, [&] { return make(state.range(0)); });
     UnstructuredPlan const& plan = made.prepared.plan;
-    NodeArrays<Memory> const baseline(made.mesh.coordinates), morphed(made.mesh.coordinates);
-    auto const morpher = MorpherAccess::of(exec, plan, baseline);
-    auto const given = made.prepared.boundary_displacement();
-    auto const boundary = stages::upload(exec, given, "gridmorph::bench::boundary");
-    double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, boundary, morphed); });
     double const fit = 60.0 * double(plan.fit.nodes.size()) + 8.0 * double(plan.fit.nodes.item.size());
-    double const rows = bytes_of(plan.near.rows) + bytes_of(plan.far) + bytes_of(plan.residual_detail.rows) + fit;
-    set_ball_rates(state, exec, mean, made.mesh, rows + (60 + 48 + 220) * double(made.mesh.n_nodes()));
+    time_apply(exec, state, made.mesh, made.prepared, bytes_of_rows(plan) + fit);
     if (plan.fit.nodes.size() > 0)
       state.counters["groups per node"] = double(plan.fit.nodes.item.size()) / double(plan.fit.nodes.size());
   }
