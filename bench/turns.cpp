@@ -1,5 +1,5 @@
-// How shapes of elements stand what bodies do: this project, in one step and without its guard, by default and by least
-// squares (NearFieldMethod), beside thin plate splines with every boundary node as a centre (thin_plate.hpp).
+// How shapes of elements stand what bodies do: this project, in one step and without its guard, by default and by the
+// lattice (NearFieldMethod), beside thin plate splines with every boundary node as a centre (thin_plate.hpp).
 //
 //   bench_turns [--small] [--against FILE] [CASE ...]      all cases where none is named
 //
@@ -328,8 +328,8 @@ std::map<std::string, std::function<Case(bool)>> all_cases() {
 using Row = std::tuple<std::string, double, std::string>;  ///< case, amount, method
 
 std::string const splines = "thin plate";
-std::vector<std::pair<std::string, NearFieldMethod>> const methods{{"gridmorph", NearFieldMethod::lattice},
-                                                                   {"least squares", NearFieldMethod::least_squares}};
+std::vector<std::pair<std::string, NearFieldMethod>> const methods{{"gridmorph", NearFieldMethod::automatic},
+                                                                   {"lattice", NearFieldMethod::lattice}};
 
 /// What this project had in the lines of an earlier run.
 std::map<Row, Verdict> read_earlier(char const* path) {

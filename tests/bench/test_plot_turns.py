@@ -44,12 +44,12 @@ class PlotTurns(unittest.TestCase):
         self.assertIn(["airfoil, flap, degrees", "5", "0.970", "0.980"], rows)
 
     def test_has_a_column_for_each_method(self):
-        run = self.run_on(FIGURES + "flap,5,gridmorph,0.97,0\nflap,5,least squares,0.99,0\nflap,5,thin plate,0.98,0\n", "--table")
+        run = self.run_on(FIGURES + "flap,5,gridmorph,0.97,0\nflap,5,lattice,0.99,0\nflap,5,thin plate,0.98,0\n", "--table")
         self.assertEqual(run.returncode, 0, run.stderr)
         rows = [[c.strip() for c in line.strip("|").split("|")] for line in run.stdout.splitlines()]
-        self.assertIn(["changed by", "amount", "gridmorph", "least squares", "thin plate"], rows)
+        self.assertIn(["changed by", "amount", "gridmorph", "lattice", "thin plate"], rows)
         self.assertIn(["airfoil, flap, degrees", "5", "0.970", "0.990", "0.980"], rows)
-        self.assertIn(["least squares", "-", "-", "-", "-", "-", "-"], rows)
+        self.assertIn(["lattice", "-", "-", "-", "-", "-", "-"], rows)
 
     def test_draws(self):
         out = os.path.join(self.folder.name, "turns.png")

@@ -113,6 +113,17 @@ TEST(CaseFileText, HasTheDefaultNearFieldUnlessItSaysFalse) {
   EXPECT_FALSE(none.plan.default_boundary_layer);
 }
 
+TEST(CaseFileText, TakesTheLatticeWhereItSpeaksOfTheWrap) {
+  auto const method = [](std::string const& more) { return parse(smallest + more).plan.elements.method; };
+  EXPECT_EQ(method(""), NearFieldMethod::automatic);
+  EXPECT_EQ(method("[near_field]\noffset = 0.1\n"), NearFieldMethod::automatic);
+  for (auto const* wrap :
+       {"[near_field]\nwrap = \"tube\"\n", "[near_field]\nresolution = 3\n", "[background]\ncells = 3\n"})
+    EXPECT_EQ(method(wrap), NearFieldMethod::lattice) << wrap;
+  EXPECT_EQ(method("[near_field]\nmethod = \"layers\"\nresolution = 3\n"), NearFieldMethod::layers);
+  EXPECT_EQ(method("[near_field]\nmethod = \"least-squares\"\n"), NearFieldMethod::least_squares);
+}
+
 TEST(CaseFileText, LeavesTheExtentOfANearFieldToThePlanWhereItSaysNone) {
   CaseFile const c = parse(smallest + "[boundary_layer]\nwalls = \"b\"\n");
   ASSERT_EQ(c.plan.boundary_layers.size(), 1u);

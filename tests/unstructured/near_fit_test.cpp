@@ -1,5 +1,6 @@
 // The walls' motion by least squares, at the scale of the distance from them.
 #include "support/made_bodies.hpp"
+#include "support/plane_cascade.hpp"
 #include "support/random.hpp"
 #include "support/unstructured_case.hpp"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -64,20 +66,131 @@ TEST(NearFit, PrescribedDisplacementsHoldExactlyAndElementsStayAsTheyAre) {
   }
 }
 
-TEST(NearFit, WallsThatEndOnBoundariesGoByTheLattice) {
+/// A body that leans on the wall that it stands on.
+Motion leaning() {
+  return motion_of({rule_for({"body"}, FunctionRule{"leans",
+                                                    [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                                      for (std::size_t n = 0; n < x.size(); ++n)
+                                                        u[n] = {0.1 * x[n].z * x[n].z, 0, 0};
+                                                    }}),
+                    rule_for({"k_min"}, FixedRule{})});
+}
+
+TEST(NearFit, CarriesWallsThatEndOnBoundaries) {
   Case const c(
       box_around({8, 8, 6}, [](Vec3 const& p) { return p.x > 3 && p.x < 5 && p.y > 3 && p.y < 5 && p.z < 3; }));
-  auto const m = c.morph(motion_of({rule_for({"body"}, FunctionRule{"leans",
-                                                                    [](std::span<Vec3 const> x, std::span<Vec3> u) {
-                                                                      for (std::size_t n = 0; n < x.size(); ++n)
-                                                                        u[n] = {0.1 * x[n].z, 0, 0};
-                                                                    }}),
-                                    rule_for({"k_min"}, FixedRule{})}),
-                         by_fit());
+  auto const m = c.morph(leaning(), by_fit());
+  EXPECT_TRUE(m.prepared.plan.walls.empty());
+  EXPECT_FALSE(m.prepared.plan.fit.empty());
+  EXPECT_EQ(c.largest_miss(m), 0);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  // Above the body nodes go along, and less the farther they are.
+  auto const moved = [&](double z) {
+    for (Index n = 0; n < m.x.size(); ++n)
+      if (distance(c.mesh.coordinates[n], {4, 4, z}) < 1e-9) return m.x[n].x - 4;
+    return 0.0;
+  };
+  EXPECT_GT(moved(4), 0.5 * 0.9);
+  EXPECT_LT(moved(4), 0.9);
+  EXPECT_LT(moved(5), moved(4));
+}
+
+/// Cambered blades that turn more the farther out they are, in a wheel around z.
+Motion bent_blades() {
+  return motion_of(
+      {rule_for({"blade"}, FunctionRule{"bends with the radius",
+                                        [](std::span<Vec3 const> x, std::span<Vec3> u) {
+                                          for (std::size_t n = 0; n < x.size(); ++n) {
+                                            double const r = std::hypot(x[n].x, x[n].y);
+                                            u[n] = rotation_about({}, {0, 0, 1}, 0.03 * r * r)(x[n]) - x[n];
+                                          }
+                                        }}),
+       rule_for({"inlet", "outlet"}, FixedRule{})});
+}
+
+TEST(NearFit, IsTakenByItselfWhereWallsAreFreeBodiesAndNothingIsPeriodic) {
+  auto const fits = [](Case const& c, Motion const& motion, PlanOptions const& options = {}) {
+    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, options);
+    EXPECT_EQ(prepared.plan.fit.empty(), !prepared.report.by_least_squares);
+    return prepared.report.by_least_squares;
+  };
+  Case const c = section();
+  EXPECT_TRUE(fits(c, by_places("airfoil", bent(0.1))));
+  PlanOptions tube;
+  tube.elements.tube = true;
+  EXPECT_FALSE(fits(c, by_places("airfoil", bent(0.1)), tube));
+  auto const stands = [](Vec3 const& p) { return p.x > 3 && p.x < 5 && p.y > 3 && p.y < 5 && p.z < 3; };
+  EXPECT_FALSE(fits(Case(box_around({8, 8, 6}, stands)), leaning()));
+  EXPECT_FALSE(fits(Case(plane_cascade(section_of_wheel(11), turned_sides(2 * std::numbers::pi / 11))), bent_blades()));
+}
+
+/// The wall turns as a whole about an axis across the one that a body on a plane may turn about.
+TEST(NearFit, FarNodesDoNotTurnWithWallsOnAPlane) {
+  Case const c(box_around({24, 24, 16},
+                          [](Vec3 const& p) { return std::abs(p.x - 12) < 2 && std::abs(p.y - 12) < 1 && p.z < 5; }));
+  Motion motion = by_places("body", [](Vec3 const& p) { return Vec3{0, 0.02 * p.z * p.z, 0}; });
+  motion.rules.push_back(rule_for({"k_min"}, SlipRule{}));
+  auto const m = c.morph(motion);
+  EXPECT_TRUE(m.prepared.report.by_least_squares);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  double largest = 0;
+  for (Index n = 0; n < m.x.size(); ++n) largest = std::max(largest, distance(m.x[n], c.mesh.coordinates[n]));
+  EXPECT_LT(largest, 1.6 * 0.02 * 25);
+}
+
+TEST(NearFit, GoesByTheLatticeAmidABackgroundMeshOfTheUsers) {
+  Case const c = section();
+  PlanOptions options = by_fit(), by_lattice;
+  by_lattice.elements.method = NearFieldMethod::lattice;
+  options.elements.background = std::make_shared<Background const>(
+      *c.morph(by_places("airfoil", bent(0.05)), by_lattice).prepared.plan.background);
+  auto const m = c.morph(by_places("airfoil", bent(0.05)), options);
   EXPECT_FALSE(m.prepared.plan.walls.empty());
   EXPECT_TRUE(m.prepared.plan.fit.empty());
   EXPECT_TRUE(std::any_of(m.prepared.notes.begin(), m.prepared.notes.end(),
                           [](std::string const& n) { return n.find("in place of least squares") != n.npos; }));
+}
+
+TEST(NearFit, BladesComeAgainBehindPeriodicSides) {
+  constexpr int blades = 11;
+  Periodic const sides = turned_sides(2 * std::numbers::pi / blades);
+  Case const c(plane_cascade(section_of_wheel(blades), sides));
+  auto const m = c.morph(bent_blades(), by_fit());
+  EXPECT_EQ(m.prepared.plan.fit.images.size(), 4u);
+  EXPECT_EQ(c.largest_miss(m), 0);
+  EXPECT_EQ(c.inverted(m.x), 0);
+  RigidTransform const to = rotation_about({}, {0, 0, 1}, 2 * std::numbers::pi / blades);
+  double moved = 0;
+  for (auto const& connection : c.mesh.connections)
+    for (std::size_t k = 0; k < connection.nodes.size(); ++k) {
+      Vec3 const a = m.x[connection.nodes[k]], b = m.x[connection.donor_nodes[k]];
+      ASSERT_LT(std::min(distance(to(a), b), distance(to(b), a)), 1e-12) << k;
+      moved = std::max(moved, distance(a, c.mesh.coordinates[connection.nodes[k]]));
+    }
+  EXPECT_GT(moved, 0.01);
+}
+
+TEST(NearFit, PartsMoveByThemselves) {
+  auto const parted = [](double x) { return x < 7 || x > 8; };
+  Mesh const mesh = part_of(
+      box_around({15, 7, 7},
+                 [](Vec3 const& p) {
+                   return std::fmod(p.x, 8) > 2 && std::fmod(p.x, 8) < 4 && p.y > 2 && p.y < 5 && p.z > 2 && p.z < 5;
+                 }),
+      [&](Vec3 const& p) { return parted(p.x); }, "side", PatchKind::inflow);
+  Case const c(mesh);
+  auto const bends = [&](double behind) {
+    return by_places("body", [=](Vec3 const& p) {
+      return Vec3{0, 0, (p.x < 7 ? 0.05 : behind) * (p.y - 2) * (p.y - 2)};
+    });
+  };
+  auto const both = c.morph(bends(0.03), by_fit()), one = c.morph(bends(0), by_fit());
+  EXPECT_EQ(c.largest_miss(both), 0);
+  EXPECT_EQ(std::ssize(both.prepared.report.layer), c.mesh.n_nodes());
+  for (Index n = 0; n < c.mesh.n_nodes(); ++n) {
+    Vec3 const x = c.mesh.coordinates[n];
+    ASSERT_EQ(one.x[n], x.x < 7.5 ? both.x[n] : x) << n;
+  }
 }
 
 /// What a field makes of the motion of walls around a point at rest, at all its readers.
@@ -91,9 +204,11 @@ std::vector<Vec3> applied(LeastSquaresField const& field, Coordinates const& x, 
   auto const table = [&](InterpolationOperator const& rows) {
     return kernels::InterpolationTable<Host>{view(rows.target), view(rows.first), view(rows.item), view(rows.weight)};
   };
-  std::vector<kernels::MotionMoments> moment(walls.size()), group(std::size_t(field.n_groups));
-  kernels::MomentsOfFrames<Host> const moments{
-      view(walls), {x.x.data(), x.y.data(), x.z.data()}, field.origin, frames.data(), moment.data()};
+  std::vector<kernels::WallImage> images;
+  for (RigidTransform const& image : field.images) images.push_back({image.rotation, image.translation});
+  std::vector<kernels::MotionMoments> moment(walls.size() * (1 + images.size())), group(std::size_t(field.n_groups));
+  kernels::MomentsOfFrames<Host> const moments{view(walls),  view(images),  {x.x.data(), x.y.data(), x.z.data()},
+                                               field.origin, frames.data(), moment.data()};
   for (Index k = 0; k < moments.size(); ++k) moments(k);
   using Rows = kernels::InterpolateRows<Host, kernels::MotionMoments const*, kernels::MotionMoments>;
   for (Index r = 0; r < field.leaves.size(); ++r) Rows{table(field.leaves), moment.data(), group.data()}(r);
@@ -127,7 +242,7 @@ struct Bumps {
     for (std::size_t n = n_walls; n < places.size(); ++n) {
       double nearest = 1e9;
       for (std::size_t w = 0; w < n_walls; ++w) nearest = std::min(nearest, distance(places[n], places[w]));
-      readers.push_back({Index32(n), nearest, 1});
+      readers.push_back({Index32(n), nearest});
     }
     x = Coordinates(Index(places.size()));
     for (std::size_t n = 0; n < places.size(); ++n) x.set(Index(n), to(places[n]));
@@ -141,12 +256,43 @@ TEST(LeastSquaresField, CarriesAMotionOfAllWallsExactly) {
   for (int i = 0; i < 3; ++i) gradient.m[i][i] -= 1;
   std::vector<kernels::AffineMotion> frames;
   for (Index32 const w : b.walls) frames.push_back({r(b.x[w]) - b.x[w], gradient});
-  auto const field = make_least_squares_field(HostInstance(), b.x, b.walls, b.area, b.readers);
+  auto const field = make_least_squares_field(HostInstance(), b.x, b.walls, b.area, {}, MeanTurn::taken_off, b.readers);
   auto const u = applied(field, b.x, b.walls, frames);
   for (std::size_t k = 0; k < u.size(); ++k) {
     Vec3 const at = b.x[b.readers[k].node];
     ASSERT_LT(distance(u[k], r(at) - at), 1e-12 * (1 + norm(at))) << k;
   }
+}
+
+TEST(LeastSquaresField, HasImagesAsIfTheyWereWalls) {
+  Bumps const b;
+  RigidTransform const to = rotation_about({1.2, -0.3, 0}, {0.6, 0, 0.8}, 0.9);
+  auto const moves = [](Vec3 const& p) { return Vec3{0.1 * p.z, 0.2 * std::sin(3 * p.x) * p.y, p.x * p.y}; };
+  auto const turns = [](Vec3 const& p) { return Mat3{{{0, 0.1, p.x}, {0, p.y, -0.2}, {0.3, 0, 0.1 * p.z}}}; };
+  Bumps all = b;
+  std::vector<kernels::AffineMotion> frames, frames_of_all;
+  for (Index32 const w : b.walls) frames.push_back({moves(b.x[w]), turns(b.x[w])});
+  frames_of_all = frames;
+  std::vector<Vec3> places;
+  for (Index n = 0; n < b.x.size(); ++n) places.push_back(b.x[n]);
+  for (std::size_t k = 0; k < b.walls.size(); ++k) {
+    all.walls.push_back(Index32(places.size()));
+    all.area.push_back(b.area[k]);
+    places.push_back(to(b.x[b.walls[k]]));
+    frames_of_all.push_back({to.rotation * frames[k].u, to.rotation * (frames[k].gradient * transpose(to.rotation))});
+  }
+  all.x = Coordinates(Index(places.size()));
+  for (std::size_t n = 0; n < places.size(); ++n) all.x.set(Index(n), places[n]);
+  for (FieldReader& r : all.readers)
+    for (Index32 const w : all.walls) r.distance = std::min(r.distance, distance(all.x[w], all.x[r.node]));
+  auto const u =
+      applied(make_least_squares_field(HostInstance(), b.x, b.walls, b.area, {to}, MeanTurn::taken_off, b.readers), b.x,
+              b.walls, frames);
+  auto const v = applied(
+      make_least_squares_field(HostInstance(), all.x, all.walls, all.area, {}, MeanTurn::taken_off, all.readers), all.x,
+      all.walls, frames_of_all);
+  ASSERT_EQ(u.size(), v.size());
+  for (std::size_t k = 0; k < u.size(); ++k) ASSERT_LT(distance(u[k], v[k]), 1e-12) << k;
 }
 
 TEST(LeastSquaresField, IsSmoothAndDoesNotDependOnTheAxes) {
@@ -160,7 +306,8 @@ TEST(LeastSquaresField, IsSmoothAndDoesNotDependOnTheAxes) {
     for (auto& f : frames)
       for (auto& row : f.gradient.m)
         for (double& entry : row) entry = 0;
-    auto const field = make_least_squares_field(HostInstance(), turned.x, turned.walls, turned.area, turned.readers);
+    auto const field = make_least_squares_field(HostInstance(), turned.x, turned.walls, turned.area, {},
+                                                MeanTurn::taken_off, turned.readers);
     auto u = applied(field, turned.x, turned.walls, frames);
     Mat3 const back = transpose(turn.rotation);
     for (Vec3& v : u) v = back * v;

@@ -46,8 +46,13 @@ Rule stretches(double size, Vec3 const& centre = {3.5, 3.5, 3.5}, double across 
                         }
                       }};
 }
-PlanOptions with_layers(int n, BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
+PlanOptions by_lattice() {
   PlanOptions options;
+  options.elements.method = NearFieldMethod::lattice;
+  return options;
+}
+PlanOptions with_layers(int n, BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
+  PlanOptions options = by_lattice();
   options.elements.cells = 1;  // a coarse background: the stages are the same
   options.boundary_layers.push_back({.walls = {}, .extent = BoundaryLayer::Extent::layers, .layers = n, .mode = mode});
   return options;
@@ -147,7 +152,17 @@ std::vector<Kind> kinds() {
        [] { return airfoil(48, 3, 0.02, 1.3, 4); },
        {rule_for({"airfoil"}, grows({0.3, 0, 0}))},
        by_fit({})},
-      {"no_columns", box, {moves()}, {}},
+      {"by_fit_where_walls_end_on_others",
+       half_annulus,
+       {rule_for({"j_min"}, bends(0.03, {1, 0, 0})), rule_for({"j_max"}, FixedRule{}),
+        rule_for({"i_min", "i_max", "k_min", "k_max"}, FreeRule{})},
+       by_fit({})},
+      {"by_fit_behind_periodic_sides",
+       [] { return sector(1).mesh(); },
+       {rule_for({"hub"}, bulges(sector(1))), rule_for({"inlet", "outlet"}, FreeRule{}),
+        rule_for({"shroud"}, SlipRule{SlipRule::Surface::revolution})},
+       by_fit({})},
+      {"no_columns", box, {moves()}, by_lattice()},
       {"slips_on_three_sides",
        box,
        {moves(), rule_for({"i_min", "j_min", "k_min"}, SlipRule{}), rule_for({"i_max"}, translation({0.1, 0, 0})),
@@ -159,7 +174,7 @@ std::vector<Kind> kinds() {
          return box_around({7, 7, 7}, in_the_middle, true);
        },
        {rule_for({"body"}, bends(0.1))},
-       {}},
+       by_lattice()},
       {"second_order",
        [] { return second_order(box(), true); },
        {rule_for({"body"}, bends(0.1)), slips},
@@ -168,9 +183,9 @@ std::vector<Kind> kinds() {
        [] { return in_two_zones(box(), [](Vec3 const& p) { return p.x < 5; }); },
        {moves(), slips},
        with_layers(1)},
-      {"two_bodies", two_bodies, {rule_for({"body"}, bends(0.05))}, {}},
+      {"two_bodies", two_bodies, {rule_for({"body"}, bends(0.05))}, by_lattice()},
       {"airfoil", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, with_layers(2)},
-      {"airfoil_alone", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, {}},
+      {"airfoil_alone", [] { return airfoil(48, 3, 0.02, 1.3, 4); }, {airfoil_turns}, by_lattice()},
       {"stretched", box, {rule_for({"body"}, stretches(0.4))}, with_layers(1)},
       {"stretched_along_a_plane",
        [] {
@@ -182,7 +197,7 @@ std::vector<Kind> kinds() {
       {"stretched_airfoil",
        [] { return airfoil(48, 3, 0.02, 1.3, 4); },
        {rule_for({"airfoil"}, stretches(0.5, {0.3, 0, 0}, 0))},
-       {}},
+       by_lattice()},
       {"periodic", [] { return periodic_flat_box(8, 5, 2); }, {rule_for({"j_min"}, translation({0, 0.3, 0}))}, {}},
       {"common_motion",
        box,

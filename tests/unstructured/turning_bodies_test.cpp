@@ -517,6 +517,12 @@ Motion by_places(std::string const& patch, std::function<Vec3(Vec3 const&)> cons
                                                      for (std::size_t n = 0; n < x.size(); ++n) u[n] = moves(x[n]);
                                                    }})});
 }
+/// Bodies stretch as wholes where the lattice carries what is left.
+PlanOptions by_lattice() {
+  PlanOptions options;
+  options.elements.method = NearFieldMethod::lattice;
+  return options;
+}
 double stretch_share(UnstructuredMorphed const& m) {
   auto const& limits = m.prepared.plan.turns_of_bodies.limits;
   return limits.empty() ? 0 : limits.front().share;
@@ -527,7 +533,7 @@ TEST(StretchedBody, TakesWhatIsAroundItAlongBeyondItsColumns) {
   // Turned by 20 degrees, half as thick again, a fifth longer.
   auto const turn = rotation_about({0.4, 0, 0}, {0, 0, 1}, 20 * degrees);
   auto const whole = [&](Vec3 const& x) { return turn(Vec3{0.4 + 1.2 * (x.x - 0.4), 1.5 * x.y, x.z}); };
-  auto const m = c.morph(by_places("airfoil", [&](Vec3 const& x) { return whole(x) - x; }));
+  auto const m = c.morph(by_places("airfoil", [&](Vec3 const& x) { return whole(x) - x; }), by_lattice());
   EXPECT_EQ(stretch_share(m), 1);
   EXPECT_EQ(c.largest_miss(m), 0);
   EXPECT_EQ(c.inverted(m.x), 0);
@@ -569,7 +575,7 @@ Vec3 bent(Vec3 const& x, double size) {
 
 TEST(TurningBody, HasShortColumnsWhereItBendsAndNotForNoise) {
   auto const c = c_mesh();
-  auto const columns = [&](std::function<Vec3(Vec3 const&)> const& moves, PlanOptions const& options = {}) {
+  auto const columns = [&](std::function<Vec3(Vec3 const&)> const& moves, PlanOptions const& options = by_lattice()) {
     return prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", moves), options).plan.columns.node;
   };
   auto const turn = rotation_about({0.4, 0.3, 0}, {0, 0, 1}, 0.4);
@@ -586,7 +592,7 @@ TEST(TurningBody, HasShortColumnsWhereItBendsAndNotForNoise) {
   // Half as much bends them alike, and so does what is known of displacements to come.
   EXPECT_EQ(columns([](Vec3 const& x) { return bent(x, 0.05); }), at_once);
   auto const known = prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", rigid), {}).plan.known;
-  PlanOptions options;
+  PlanOptions options = by_lattice();
   options.elements.motion = 0.1;
   for (Index32 const n : known) options.elements.shape.push_back(bent(c.mesh.coordinates[n], 0.02));
   EXPECT_EQ(columns(rigid, options), at_once);
@@ -597,11 +603,13 @@ TEST(TurningBody, HasShortColumnsWhereItBendsAndNotForNoise) {
 TEST(StretchedBody, AlongAPlaneKeepsIt) {
   Case const c(
       box_around({16, 16, 8}, [](Vec3 const& p) { return std::abs(p.x - 8) < 3 && std::abs(p.y - 8) < 1 && p.z < 4; }));
-  auto const m = c.morph([&] {
-    Motion motion = by_places("body", [](Vec3 const& x) { return Vec3{0.3 * (x.x - 8), 0.5 * (x.y - 8), 0}; });
-    motion.rules.push_back(rule_for({"k_min"}, SlipRule{}));
-    return motion;
-  }());
+  auto const m = c.morph(
+      [&] {
+        Motion motion = by_places("body", [](Vec3 const& x) { return Vec3{0.3 * (x.x - 8), 0.5 * (x.y - 8), 0}; });
+        motion.rules.push_back(rule_for({"k_min"}, SlipRule{}));
+        return motion;
+      }(),
+      by_lattice());
   EXPECT_EQ(stretch_share(m), 1);
   EXPECT_EQ(c.inverted(m.x), 0);
   double slid = 0;
@@ -633,7 +641,7 @@ TEST(StretchedBody, HasTheVelocityOfItsDifferences) {
       return turn(x + Vec3{0.2 * (1 + t) * (x.x - 0.4), (0.5 - t) * x.y, 0} + 0.02 * t * Vec3{0, x.x * x.x, 0}) - x;
     };
   };
-  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", places(0)), {});
+  auto const prepared = prepare(c.mesh, c.topology, c.face_patches, by_places("airfoil", places(0)), by_lattice());
   EXPECT_GT(prepared.plan.turns_of_bodies.limits.front().share, 0.9);
   auto const at = [&](double t) {
     std::vector<Vec3> out;

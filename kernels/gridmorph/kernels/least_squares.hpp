@@ -1,14 +1,15 @@
 // The motion of walls carried into the volume by moving least squares: at each node x the affine motion that fits best
 // what the walls do, those weighed most that are nearest at the scale of the distance d,
 //
-//   u(x) = f (u_0 + B (x - x_0)),   x_0 = sum of w_i x_i,   u_0 = sum of w_i u_i,   w_i = A_i / |x - x_i|^p, sum 1
+//   u(x) = u_0 + k B (x - x_0),   x_0 = sum of w_i x_i,   u_0 = sum of w_i u_i,   w_i = A_i / |x - x_i|^p, sum 1
 //   B = (sum of w_i u_i (x_i - x_0)^T + m sum of w_i G_i) (sum of w_i (x_i - x_0)(x_i - x_0)^T + m I)^-1,   m = d^2
 //
-// with u_i where wall node i goes, G_i how the wall turns there (R_i - I), f a share planned for each node. A common
-// motion of the walls is that of x, but for f, whatever the weights; beside a wall x moves as the wall does, far away
-// as all of it on average. All weights are the baseline's, so this is linear in u and G: with b = f (...)^-1 (x - x_0)
+// with u_i where wall node i goes, G_i how the wall turns there (R_i - I), k planned: 1, or less far from walls that
+// turn as wholes. A common motion of the walls is that of x for k = 1, whatever the weights; beside a wall x moves as
+// the wall does, far away as all of it on average. All weights are the baseline's, so this is linear in u and G: with
+// b = k (...)^-1 (x - x_0)
 //
-//   u(x) = sum over groups g of w_g [ (f - x_0 . b) u_g + (Q_g + m G_g) b ],   Q = mean of u x^T
+//   u(x) = sum over groups g of w_g [ (1 - x_0 . b) u_g + (Q_g + m G_g) b ],   Q = mean of u x^T
 //
 // far groups of wall nodes as one (P. Lancaster, K. Salkauskas, Math. Comput. 37 (1981) 141, for moving least squares;
 // S. Schaefer et al., ACM Trans. Graph. 25 (2006) 533, for their use to deform).
@@ -46,25 +47,41 @@ struct MotionMoments {
   }
 };
 
-/// moment(k) of a wall node from its frame: where it goes and how the wall turns there.
+/// Walls as they come again behind periodic boundaries: at x' = rotation x + translation.
+struct WallImage {
+  Mat3 rotation;
+  Vec3 translation;
+};
+
+/// moment(k) of a wall node from its frame: where it goes and how the wall turns there; of all nodes, then of those of
+/// each image.
 template <class MemorySpace>
 struct MomentsOfFrames {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
+  Kokkos::View<WallImage const*, MemorySpace> image;  ///< the walls themselves are none
   Field<double const> x;
   Vec3 origin;
   AffineMotion const* frame;
   MotionMoments* moment;
 
-  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
+  [[nodiscard]] Index size() const { return Index(node.extent(0) * (1 + image.extent(0))); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Vec3 const arm = x[node(k)] - origin, u = frame[k].u;
-    double const a[3] = {arm.x, arm.y, arm.z}, v[3] = {u.x, u.y, u.z};
+    Index const n = Index(node.extent(0)), wall = k % n;
+    Vec3 place = x[node(wall)];
+    AffineMotion motion = frame[wall];
+    if (k >= n) {
+      WallImage const& to = image(k / n - 1);
+      place = to.rotation * place + to.translation;
+      motion = {to.rotation * motion.u, to.rotation * (motion.gradient * kernels::transpose(to.rotation))};
+    }
+    Vec3 const arm = place - origin;
+    double const a[3] = {arm.x, arm.y, arm.z}, v[3] = {motion.u.x, motion.u.y, motion.u.z};
     MotionMoments m;
-    m.u = u;
+    m.u = motion.u;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         m.lever[i][j] = v[i] * a[j];
-        m.turn[i][j] = frame[k].gradient.m[i][j];
+        m.turn[i][j] = motion.gradient.m[i][j];
       }
     moment[k] = m;
   }
@@ -75,7 +92,7 @@ template <class MemorySpace>
 struct LeastSquaresTable {
   InterpolationTable<MemorySpace> rows;            ///< groups -> nodes
   Kokkos::View<Vec3 const*, MemorySpace> lean;     ///< per row: b
-  Kokkos::View<double const*, MemorySpace> level;  ///< f - x_0 . b, x_0 from the origin
+  Kokkos::View<double const*, MemorySpace> level;  ///< 1 - x_0 . b, x_0 from the origin
   Kokkos::View<double const*, MemorySpace> room;   ///< m
 
   /// The displacement of the node of row r.
@@ -153,10 +170,11 @@ struct GroupsFromLeastSquares {
   }
 };
 
-/// Transpose of MomentsOfFrames: adds to the gradients of frames.
+/// Transpose of MomentsOfFrames, by wall nodes: adds to the gradients of frames.
 template <class MemorySpace>
 struct FramesFromMoments {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
+  Kokkos::View<WallImage const*, MemorySpace> image;
   Field<double const> x;
   Vec3 origin;
   MotionMoments const* moment;
@@ -164,16 +182,29 @@ struct FramesFromMoments {
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    Vec3 const arm = x[node(k)] - origin;
+    AffineMotion sum = frame[k] + of_moment(moment[k], x[node(k)]);
+    for (Index i = 0; i < Index(image.extent(0)); ++i) {
+      WallImage const& to = image(i);
+      AffineMotion const g = of_moment(moment[(i + 1) * size() + k], to.rotation * x[node(k)] + to.translation);
+      Mat3 const back = kernels::transpose(to.rotation);
+      sum += {back * g.u, back * (g.gradient * to.rotation)};
+    }
+    frame[k] = sum;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION AffineMotion of_moment(MotionMoments const& m, Vec3 const& place) const {
+    Vec3 const arm = place - origin;
     double const a[3] = {arm.x, arm.y, arm.z};
-    MotionMoments const& m = moment[k];
+    AffineMotion out;
     double v[3] = {0, 0, 0};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         v[i] += m.lever[i][j] * a[j];
-        frame[k].gradient.m[i][j] += m.turn[i][j];
+        out.gradient.m[i][j] = m.turn[i][j];
       }
-    frame[k].u += m.u + Vec3{v[0], v[1], v[2]};
+    out.u = m.u + Vec3{v[0], v[1], v[2]};
+    return out;
   }
 };
 

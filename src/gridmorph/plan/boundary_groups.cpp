@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace gridmorph {
@@ -65,31 +66,55 @@ Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
   return g;
 }
 
+double BoundaryGroups::distance(Vec3 const& x) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  if (groups.empty()) return nearest;
+  std::vector<Index32> open{0};
+  auto const from = [&](Index32 g) { return gridmorph::distance(x, groups[std::size_t(g)].centre); };
+  while (!open.empty()) {
+    Index32 const g = open.back();
+    Group const& group = groups[std::size_t(g)];
+    open.pop_back();
+    if (from(g) - group.radius > nearest) continue;
+    if (group.part[0] < 0) {
+      for (Index32 k = group.begin; k < group.end; ++k)
+        nearest = std::min(nearest, gridmorph::distance(x, x_[node(k)]));
+    } else {
+      bool const first_is_nearer = from(group.part[0]) < from(group.part[1]);
+      open.push_back(group.part[first_is_nearer ? 1 : 0]);
+      open.push_back(group.part[first_is_nearer ? 0 : 1]);
+    }
+  }
+  return nearest;
+}
+
+Vec3 BoundaryGroups::longest_axis(Group const& group) const {
+  double moments[3][3], v[3][3];
+  std::copy_n(&group.moments[0][0], 9, &moments[0][0]);
+  kernels::diagonalise(moments, v);
+  int first = 0;
+  for (int k = 1; k < 3; ++k)
+    if (moments[k][k] > moments[first][first]) first = k;
+  double const next = std::max(moments[(first + 1) % 3][(first + 1) % 3], moments[(first + 2) % 3][(first + 2) % 3]);
+  if (!(next < (1 - 1e-3) * moments[first][first])) return {};
+  Vec3 const axis{v[first][0], v[first][1], v[first][2]};
+  // Eigenvectors have no sense: towards the side that reaches farther, where there is one.
+  double reach = 0, whole = 0;
+  for (Index32 k = group.begin; k < group.end; ++k) {
+    double const at = dot(x_[node(k)] - group.centre, axis), cubed = area(k) * at * at * at;
+    reach += cubed;
+    whole += std::abs(cubed);
+  }
+  if (std::abs(reach) < 1e-6 * whole) reach = dot(axis, {1, 0.618, 0.382});
+  return reach < 0 ? -axis : axis;
+}
+
 Index32 BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
   // Extents that are the same but for round-off: the first axis.
   double const slack = step_;
   std::size_t const axis =
       extent.x + slack >= extent.y ? (extent.x + slack >= extent.z ? 0 : 2) : (extent.y + slack >= extent.z ? 1 : 2);
-  Vec3 across;
-  if (along_ == Along::principal_axes) {
-    double moments[3][3], v[3][3];
-    std::copy_n(&group.moments[0][0], 9, &moments[0][0]);
-    kernels::diagonalise(moments, v);
-    int first = 0;
-    for (int k = 1; k < 3; ++k)
-      if (moments[k][k] > moments[first][first]) first = k;
-    double const next = std::max(moments[(first + 1) % 3][(first + 1) % 3], moments[(first + 2) % 3][(first + 2) % 3]);
-    if (next < (1 - 1e-3) * moments[first][first]) across = {v[first][0], v[first][1], v[first][2]};
-    // Eigenvectors have no sense: towards the side that reaches farther, where there is one.
-    double reach = 0, whole = 0;
-    for (Index32 k = group.begin; k < group.end; ++k) {
-      double const at = dot(x_[node(k)] - group.centre, across), cubed = area(k) * at * at * at;
-      reach += cubed;
-      whole += std::abs(cubed);
-    }
-    if (std::abs(reach) < 1e-6 * whole) reach = dot(across, {1, 0.618, 0.382});
-    if (reach < 0) across = -across;
-  }
+  Vec3 const across = along_ == Along::principal_axes ? longest_axis(group) : Vec3{};
   bool const is_turned = norm(across) > 0;
   for (Index32 k = group.begin; k < group.end; ++k) {
     auto const n = std::size_t(order_[std::size_t(k)]);

@@ -37,12 +37,19 @@ class BoundaryGroups {
 
   std::vector<Group> groups;
 
+  /// The distance of a place from the nearest node; infinite where there is none. Cost O(log n) beside nodes.
+  [[nodiscard]] double distance(Vec3 const& x) const;
+  /// About the largest distance between two nodes.
+  [[nodiscard]] double size() const { return groups.empty() ? 0 : 2 * groups.front().radius; }
+
   /// Means over groups: rows from the nodes, by their numbers in the list, to leaves, and from the two parts of a group
   /// to the group, from the smallest on.
   void add_rows(InterpolationOperator& leaves, LayerRows& rows) const;
 
  private:
   Index32 make(Index32 begin, Index32 end);
+  /// The longest principal axis of a group, with a sense; zero where two are as long.
+  [[nodiscard]] Vec3 longest_axis(Group const& group) const;
   /// Brings the nodes of a group in an order, and returns where the second part begins. Along principal axes nodes that
   /// are equally far along them stay together, so that mirrored meshes have mirrored groups.
   Index32 halve(Group const& group, Vec3 const& extent);

@@ -14,10 +14,12 @@ struct Background;
 
 /// What carries the motion of the walls between the ends of their columns and the wrap.
 enum class NearFieldMethod {
+  /// Least squares where all moving walls are bodies that turn freely and nothing is periodic, else the lattice.
+  automatic,
   lattice,  ///< its average on an even lattice, and from layer to layer what that misses at the columns
   layers,   ///< from layer to layer the motion itself: displacement and turn
-  /// The affine motion that fits the walls around best, at the scale of their distance, for all nodes of a mesh whose
-  /// moving walls are free bodies; otherwise as `lattice`.
+  /// The affine motion that fits the walls around best, at the scale of their distance, for all nodes of the mesh; amid
+  /// a background mesh of the user's as `lattice`.
   least_squares
 };
 
@@ -33,7 +35,7 @@ struct ElementOptions {
   /// Selectors of the walls that drive the near field; empty: every patch with an explicit rule other than `fixed` that
   /// is no inflow, outflow, farfield or symmetry.
   std::vector<std::string> walls;
-  NearFieldMethod method = NearFieldMethod::lattice;
+  NearFieldMethod method = NearFieldMethod::automatic;
   LayerWeight weight = LayerWeight::inverse_distance;
   double offset = 0;  ///< of the wrap from the moving walls [length]; 0: suggest_offset()
   double motion =
@@ -43,8 +45,9 @@ struct ElementOptions {
   std::vector<Vec3> shape;
   /// Cells of the wrap's lattice along the longest extent of the walls; few are best (WrapOptions::resolution).
   int resolution = 4;
-  bool tube = false;  ///< a tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube)
-  int cells = 4;      ///< of the background mesh along each cell of the wrap's lattice
+  /// A tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube); not by least squares.
+  bool tube = false;
+  int cells = 4;  ///< of the background mesh along each cell of the wrap's lattice
   /// A background mesh of the user's instead of one around a wrap made here, which `offset`, `resolution`, `tube` and
   /// `cells` are for; its hole is the wrap.
   std::shared_ptr<Background const> background;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace gridmorph {
@@ -13,11 +14,43 @@ namespace gridmorph {
 namespace {
 
 constexpr double order = 5;  // p
-/// Radius over distance up to which a group counts as one; no ratio of lengths in a lattice, as round-off would break
-/// such ties.
-constexpr double opening = 0.1517;
+/// Radius over distance up to which a group counts as one, and as its two parts from twice as much on; no ratio of
+/// lengths in a lattice, as round-off would break such ties. By measurement (bench_turns, bench_unstructured): half as
+/// large, sections twice as thick keep 0.02 more and an apply takes twice as long.
+constexpr double opening = 0.2517;
 /// What weighs less than this share of the nearest does not count.
-constexpr double least_weight = 1e-3;
+constexpr double least_weight = 1e-2;
+
+/// Wall nodes, then those of each image.
+struct Sources {
+  Coordinates place;
+  std::vector<Index32> number;
+  std::vector<double> area;
+
+  Sources(Coordinates const& x, std::vector<Index32> const& walls, std::vector<double> const& of_walls,
+          std::vector<RigidTransform> const& images)
+      : place(Index(walls.size() * (1 + images.size()))), number(walls.size() * (1 + images.size())) {
+    std::iota(number.begin(), number.end(), Index32(0));
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      std::size_t const wall = k % walls.size(), image = k / walls.size();
+      Vec3 const p = x[walls[wall]];
+      place.set(Index(k), image == 0 ? p : images[image - 1](p));
+      area.push_back(of_walls[wall]);
+    }
+  }
+  /// The largest distance of the walls' own nodes, the first ones, from their centre.
+  [[nodiscard]] double size(std::size_t n_walls) const {
+    Vec3 centre;
+    double sum = 0, out = 0;
+    for (std::size_t k = 0; k < n_walls; ++k) {
+      centre += area[k] * place[Index(k)];
+      sum += area[k];
+    }
+    for (std::size_t k = 0; k < n_walls; ++k)
+      out = std::max(out, gridmorph::distance(place[Index(k)], (1 / sum) * centre));
+    return out;
+  }
+};
 
 /// Means of places and of their products, as the rows of the field make them.
 struct PlaceMoments {
@@ -59,6 +92,13 @@ Vec3 solved(PlaceMoments const& of, double m, Vec3 const& v) {
   return (1 / det) * Vec3{a * v.x + b * v.y + c * v.z, b * v.x + d * v.y + e * v.z, c * v.x + e * v.y + f * v.z};
 }
 
+/// The share of what walls turn by that reaches so many of their sizes, where the mean of it is left to the field: all
+/// beside them, and so little far away that nodes move by about as much as walls there.
+double kept_turn(double sizes) {
+  double const of_reach = sizes / 0.75;
+  return 1 / (1 + of_reach * of_reach);
+}
+
 /// What the mean of 1 / r^5 over a group is of that at its centre, at the distance d, to second order.
 double spread(BoundaryGroups::Group const& group, Vec3 const& x, double d) {
   Vec3 const n = (1 / d) * (x - group.centre);
@@ -75,13 +115,25 @@ double spread(BoundaryGroups::Group const& group, Vec3 const& x, double d) {
 
 LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
                                            std::vector<Index32> const& walls, std::vector<double> const& area,
+                                           std::vector<RigidTransform> const& images, MeanTurn turns,
                                            std::vector<FieldReader> const& readers) {
   LeastSquaresField out;
   if (walls.empty()) return out;
-  BoundaryGroups const tree(coordinates, walls, area, 0, BoundaryGroups::Along::principal_axes);
+  Sources const sources(coordinates, walls, area, images);
+  BoundaryGroups const tree(sources.place, sources.number, sources.area, 0, BoundaryGroups::Along::principal_axes);
+  out.images = images;
+  double const size = sources.size(walls.size());
   out.n_groups = Index32(tree.groups.size());
   tree.add_rows(out.leaves, out.groups);
   out.origin = tree.groups.front().centre;
+
+  std::vector<double> distance_of(readers.size());
+  detail::for_all(host, "gridmorph::least_squares_distance", std::ssize(readers), [&](Index at) {
+    FieldReader const& reader = readers[std::size_t(at)];
+    double const own = reader.distance;
+    distance_of[std::size_t(at)] =
+        images.empty() ? own : std::min(own, std::max(tree.distance(coordinates[reader.node]), 1e-14 * tree.size()));
+  });
 
   struct Room {
     std::vector<std::pair<Index32, double>> open;  ///< groups, and how much of them counts
@@ -90,8 +142,8 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
   };
   out.nodes = make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
                         [&, room = Room()](Index r, InterpolationOperator& rows) mutable {
-                          FieldReader const& reader = readers[std::size_t(r)];
-                          Vec3 const x = coordinates[reader.node];
+                          Vec3 const x = coordinates[readers[std::size_t(r)].node];
+                          double const from_walls = distance_of[std::size_t(r)];
                           room.items.clear();
                           room.weights.clear();
                           room.open.assign(1, {0, 1.0});
@@ -100,12 +152,12 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
                             auto const [g, part] = room.open.back();
                             room.open.pop_back();
                             auto const& group = tree.groups[std::size_t(g)];
-                            double const d = std::max(distance(x, group.centre), reader.distance);
+                            double const d = std::max(distance(x, group.centre), from_walls);
                             // Lengths may be tiny: only ratios of weights count.
-                            double const near = reader.distance / d;
+                            double const near = from_walls / d;
                             double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
                             double const wide = group.radius / d;
-                            if (wide < 0.3 && weight < least_weight * largest) continue;
+                            if (wide < 2 * opening && weight < least_weight * largest) continue;
                             double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
                             if (opened > 0) {
                               room.open.emplace_back(group.part[1], part * opened);
@@ -123,14 +175,15 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
                             room.items[kept] = room.items[k];
                             room.weights[kept++] = room.weights[k] / largest;
                           }
-                          rows.add(reader.node, std::span(room.items).first(kept), std::span(room.weights).first(kept));
+                          rows.add(readers[std::size_t(r)].node, std::span(room.items).first(kept),
+                                   std::span(room.weights).first(kept));
                         });
 
   // With the weights as they are rounded, so that common motions are exact.
   std::vector<PlaceMoments> moment(tree.groups.size());
   for (Index r = 0; r < out.leaves.size(); ++r)
-    moment[std::size_t(out.leaves.target[std::size_t(r)])] = mean_of_row(
-        out.leaves, r, [&](Index32 k) { return PlaceMoments::of(coordinates[walls[std::size_t(k)]] - out.origin); });
+    moment[std::size_t(out.leaves.target[std::size_t(r)])] =
+        mean_of_row(out.leaves, r, [&](Index32 k) { return PlaceMoments::of(sources.place[k] - out.origin); });
   auto const of_group = [&](Index32 g) { return moment[std::size_t(g)]; };
   for (Index r = 0; r < out.groups.rows.size(); ++r)
     moment[std::size_t(out.groups.rows.target[std::size_t(r)])] = mean_of_row(out.groups.rows, r, of_group);
@@ -140,10 +193,11 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
   detail::for_all(host, "gridmorph::least_squares", std::ssize(readers), [&](Index at) {
     auto const r = std::size_t(at);
     PlaceMoments const around = mean_of_row(out.nodes, at, of_group);
-    double const m = readers[r].distance * readers[r].distance;
+    double const m = distance_of[r] * distance_of[r];
     Vec3 const x = coordinates[readers[r].node] - out.origin;
-    out.lean[r] = readers[r].share * solved(around, m, x - around.x);
-    out.level[r] = readers[r].share - dot(around.x, out.lean[r]);
+    double const kept = turns == MeanTurn::taken_off ? 1 : kept_turn(distance_of[r] / size);
+    out.lean[r] = kept * solved(around, m, x - around.x);
+    out.level[r] = 1 - dot(around.x, out.lean[r]);
     out.room[r] = m;
   });
   return out;

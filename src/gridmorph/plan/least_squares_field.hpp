@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/plan/interpolation_operator.hpp>
 #include <gridmorph/plan/layers.hpp>
 
@@ -13,11 +14,12 @@ namespace gridmorph {
 /// The affine motion that fits best, at each node, what the wall nodes around do at the scale of its distance from them
 /// (kernels/least_squares.hpp has the formulas). Far groups of wall nodes count as one.
 struct LeastSquaresField {
-  InterpolationOperator leaves;  ///< wall nodes, by their numbers in the list -> groups
+  InterpolationOperator leaves;  ///< wall nodes, by their numbers in the list, then those of each image -> groups
   LayerRows groups;              ///< groups -> groups, from the smallest on
   Index32 n_groups = 0;
-  InterpolationOperator nodes;  ///< groups -> nodes of the mesh
-  Vec3 origin;                  ///< that moments refer to
+  InterpolationOperator nodes;         ///< groups -> nodes of the mesh
+  std::vector<RigidTransform> images;  ///< the walls as they come again behind periodic boundaries
+  Vec3 origin;                         ///< that moments refer to
   // Per row of `nodes`, see kernels::LeastSquaresTable.
   std::vector<Vec3> lean;
   std::vector<double> level, room;
@@ -25,16 +27,22 @@ struct LeastSquaresField {
   [[nodiscard]] bool empty() const { return n_groups == 0; }
 };
 
-/// What a node asks of the field: its number, its distance from the walls, and the share that it takes.
+/// A node that reads the field, and its distance from the walls.
 struct FieldReader {
   Index32 node = -1;
-  double distance = 0, share = 0;
+  double distance = 0;
 };
 
-/// The field of wall nodes, with their areas, at nodes. Cost O(n log n) in the wall nodes, and per reader about 40
-/// groups opened in the plane and 100 in space; on all threads of the instance, whose number does not matter.
+/// Whether walls as wholes turn by nothing in what the field carries, as bodies that turn freely do; otherwise turns
+/// fade with the distance, in shares of the size of the walls, since they would carry far nodes with them.
+enum class MeanTurn { taken_off, left };
+
+/// The field of wall nodes, with their areas, and of their images at nodes. Cost O(n log n) in the wall nodes, and per
+/// reader about 40 groups opened in the plane and 100 in space; on all threads of the instance, whose number does not
+/// matter.
 LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
                                            std::vector<Index32> const& walls, std::vector<double> const& area,
+                                           std::vector<RigidTransform> const& images, MeanTurn turns,
                                            std::vector<FieldReader> const& readers);
 
 }  // namespace gridmorph

@@ -15,7 +15,8 @@ struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 
 /// What was found on the way, for reports and pictures.
 struct UnstructuredReport {
-  double layer_height = 0;  ///< of the highest column
+  bool by_least_squares = false;  ///< whether least squares carry the walls' motion, without wrap and background mesh
+  double layer_height = 0;        ///< of the highest column
   Index n_columns = 0;
   double offset = 0;
   std::optional<Wrap> wrap;

@@ -103,7 +103,7 @@ struct UnstructuredPlan {
   /// nodes of near and partially wrapped elements what it misses. By NearFieldMethod::layers there is none, and layers
   /// carry all of it.
   InverseDistanceField walls;
-  /// By NearFieldMethod::least_squares instead, for all nodes: the first rows are those of the ends of columns, where
+  /// By least squares instead (NearFieldMethod), for all nodes: the first rows are those of the ends of columns, where
   /// layers begin.
   LeastSquaresField fit;
   Index n_fitted_ends = 0;

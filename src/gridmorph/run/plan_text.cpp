@@ -33,9 +33,6 @@ nlohmann::json block_plan_json(Plan const& plan) {
 
 namespace {
 
-/// Whether least squares move all nodes.
-bool is_fitted(PlannedPart const& p) { return !p.report.wrap && p.background == nullptr && p.report.offset > 0; }
-
 /// What the background mesh fills.
 std::string shape(UnstructuredReport const& r) {
   if (!r.wrap) return "read from a file";
@@ -64,7 +61,7 @@ nlohmann::json part_json(PlannedPart const& p) {
       {"elements", {{"near", r.regions.n_near}, {"partially_wrapped", r.regions.n_partial}, {"far", r.regions.n_far}}},
       {"layers", r.n_layers},
       {"background",
-       {{"shape", is_fitted(p) ? "none: least squares" : shape(r)},
+       {{"shape", r.by_least_squares ? "none: least squares" : shape(r)},
         {"zones", p.background ? p.background->mesh.zones.size() : 0},
         {"nodes", p.background ? p.background->mesh.n_nodes() : 0}}},
       {"wrap_nodes", r.wrap_nodes},
@@ -86,7 +83,7 @@ nlohmann::json part_json(PlannedPart const& p) {
 
 std::string part_headline(PlannedPart const& p) {
   UnstructuredReport const& r = p.report;
-  if (is_fitted(p))
+  if (r.by_least_squares)
     return fmt::format(
         "near field: least squares at the scale of the distance from the walls, for all nodes; {} columns up to {:.4g} "
         "high, {} layers beyond them; {} elements nearer than {:.4g}, {} partly, {} farther\n",

@@ -41,6 +41,7 @@ void read_background_file(TableReader& root, TableReader& background, CaseFile& 
 
 void read_near_field(TableReader& root, std::map<std::string, double> const& constants, CaseFile& case_file) {
   ElementOptions& out = case_file.plan.elements;
+  bool is_wrapped = false;  // by what the case file says of the wrap and the background mesh around it
   if (auto near = root.table("near_field")) {
     out.walls = near->strings("walls").value_or(std::vector<std::string>{});
     if (auto const offset = near->number("offset")) {
@@ -48,12 +49,13 @@ void read_near_field(TableReader& root, std::map<std::string, double> const& con
       if (*offset <= 0)
         near->problem("offset", fmt::format("must be a positive length, found {}; remove it for the default", *offset));
     }
-    if (auto const method = near->choice("method", {"lattice", "layers", "least-squares"}))
+    if (auto const method = near->choice("method", {"automatic", "lattice", "layers", "least-squares"}))
       out.method = NearFieldMethod(*method);
     if (auto const weight = near->choice("weights", {"uniform", "inverse-distance", "quality", "curvature"}))
       out.weight = LayerWeight(*weight);
     if (auto const wrap = near->choice("wrap", {"lattice", "tube"})) out.tube = *wrap == 1;
     read_count(*near, "resolution", 1, 200, out.resolution);
+    is_wrapped = near->has("wrap") || near->has("resolution");
     near->finish();
   }
   if (auto background = root.table("background")) {
@@ -62,7 +64,9 @@ void read_near_field(TableReader& root, std::map<std::string, double> const& con
     VolumeOptions& volume = case_file.plan.volume;
     read_law(*background, {"linear", "c1", "c2", "formula"}, constants, volume.law, volume.own_law);
     background->finish();
+    is_wrapped = true;
   }
+  if (is_wrapped && out.method == NearFieldMethod::automatic) out.method = NearFieldMethod::lattice;
 }
 
 }  // namespace gridmorph::casefile

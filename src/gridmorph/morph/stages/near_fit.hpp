@@ -23,12 +23,14 @@ class NearFit {
       : walls_(upload(exec, plan.driving, name("driving"))),
         leaves_(upload(exec, plan.fit.leaves, name("leaves"))),
         groups_(upload(exec, plan.fit.groups, name("groups"))),
+        images_(upload_images(exec, plan)),
         origin_(plan.fit.origin),
         table_{upload(exec, plan.fit.nodes, name("nodes")), upload(exec, plan.fit.lean, name("lean")),
                upload(exec, plan.fit.level, name("level")), upload(exec, plan.fit.room, name("room"))},
         layers_(upload(exec, plan.near, name("layers"))),
         fade_(upload(exec, plan.near_fade, name("fade"))),
-        moment_(room_for<kernels::MotionMoments>(exec, plan.driving.size(), name("moment"))),
+        moment_(
+            room_for<kernels::MotionMoments>(exec, plan.driving.size() * (1 + plan.fit.images.size()), name("moment"))),
         group_(room_for<kernels::MotionMoments>(exec, std::size_t(plan.fit.n_groups), name("group"))),
         n_ends_(plan.n_fitted_ends) {
     if (back == nullptr) return;
@@ -50,7 +52,7 @@ class NearFit {
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     launch("gridmorph::fit::walls", exec,
-           kernels::MomentsOfFrames<Memory>{walls_, x, origin_, f.frames.data(), moment_.data()});
+           kernels::MomentsOfFrames<Memory>{walls_, images_, x, origin_, f.frames.data(), moment_.data()});
     kernels::interpolate("gridmorph::fit::leaves", exec, leaves_,
                          static_cast<kernels::MotionMoments const*>(moment_.data()), group_.data());
     kernels::interpolate_layers("gridmorph::fit::groups", exec, groups_, group_.data());
@@ -78,16 +80,25 @@ class NearFit {
     kernels::gather_rows("gridmorph::transposed::fit::leaves", exec, leaves_back_,
                          static_cast<kernels::MotionMoments const*>(group_.data()), moment_.data());
     launch("gridmorph::transposed::fit::walls", exec,
-           kernels::FramesFromMoments<Memory>{walls_, x, origin_, moment_.data(), g.frames.data()});
+           kernels::FramesFromMoments<Memory>{walls_, images_, x, origin_, moment_.data(), g.frames.data()});
   }
 
  private:
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
+  /// Fences.
+  static List<Exec, kernels::WallImage> upload_images(Exec const& exec, UnstructuredPlan const& plan) {
+    std::vector<kernels::WallImage> images;
+    for (RigidTransform const& image : plan.fit.images) images.push_back({image.rotation, image.translation});
+    auto const out = upload(exec, images, name("images"));
+    compat::fence(exec, "gridmorph::NearFit (host tables may go)");
+    return out;
+  }
 
   List<Exec, Index32> walls_;
   kernels::InterpolationTable<Memory> leaves_;
   kernels::LayerTable<Memory> groups_;
+  List<Exec, kernels::WallImage> images_;
   Vec3 origin_;
   kernels::LeastSquaresTable<Memory> table_;
   kernels::LayerTable<Memory> layers_;

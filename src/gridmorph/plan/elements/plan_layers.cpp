@@ -1,4 +1,5 @@
 #include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/node_graph.hpp>
 #include <gridmorph/plan/elements/one_rings.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -99,29 +100,35 @@ void UnstructuredPlanner::measure_columns() {
 
 void UnstructuredPlanner::plan_layers() {
   measure_columns();
-  UnstructuredPlan& plan = out_.plan;
-  if (fitted_) return plan_fit();
   Mask seeds = drives_;
   for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
+  if (fitted_)
+    plan_fit();
+  else
+    plan_near(seeds);
+  auto const& near = out_.plan.near;
+  auto& layer = out_.report.layer;
+  layer.assign(seeds.size(), -1);
+  for (std::size_t n = 0; n < seeds.size(); ++n)
+    if (seeds[n]) layer[n] = 0;
+  for (int l = 0; l < near.n_layers(); ++l)
+    for (Index r = near.level[std::size_t(l)]; r < near.level[std::size_t(l) + 1]; ++r)
+      layer[std::size_t(near.rows.target[std::size_t(r)])] = l + 1;
+  out_.report.n_layers = near.n_layers();
+}
+
+void UnstructuredPlanner::plan_near(Mask const& seeds) {
+  UnstructuredPlan& plan = out_.plan;
   Mask wanted = near_;
   // Seeds have their motion already, and copies of a node get that of the node that carries it.
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n] || !out_.graph.carries(Index32(n))) wanted[n] = 0;
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, seeds, wanted, from_wall_.distance, layer_weight());
-  out_.report.n_layers = plan.near.n_layers();
   if (options_.elements.method != NearFieldMethod::layers && !driving_faces_.empty())
     plan_smooth_walls();
   else
     plan_layer_turns();
-  auto& layer = out_.report.layer;
-  layer.assign(seeds.size(), -1);
-  for (std::size_t n = 0; n < seeds.size(); ++n)
-    if (seeds[n]) layer[n] = 0;
-  for (int l = 0; l < plan.near.n_layers(); ++l)
-    for (Index r = plan.near.level[std::size_t(l)]; r < plan.near.level[std::size_t(l) + 1]; ++r) {
-      layer[std::size_t(plan.near.rows.target[std::size_t(r)])] = l + 1;
-      wanted[std::size_t(plan.near.rows.target[std::size_t(r)])] = 0;
-    }
+  for (Index32 const n : plan.near.rows.target) wanted[std::size_t(n)] = 0;
   out_.report.unreached = std::count(wanted.begin(), wanted.end(), 1);
   if (out_.report.unreached > 0)
     out_.notes.push_back(
@@ -132,7 +139,6 @@ void UnstructuredPlanner::plan_layers() {
 
 void UnstructuredPlanner::plan_fit() {
   UnstructuredPlan& plan = out_.plan;
-  auto const& all = plan.turns_of_bodies;
   auto const n_nodes = std::size_t(mesh_.n_nodes());
   constexpr double reach = 3;  // of the height of the column below
   auto const fade = [&](std::size_t n) {
@@ -149,29 +155,29 @@ void UnstructuredPlanner::plan_fit() {
   };
   for (std::size_t n = 0; n < n_nodes; ++n) wanted[n] = ends[n] == 0 && is_moved(n) && fade(n) > 0 ? 1 : 0;
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, ends, wanted, from_wall_.distance, layer_weight());
-  out_.report.n_layers = plan.near.n_layers();
   // Only the ends of columns are where layers begin.
   Mask begins = mask(), passes = mask();
   for (Index32 const n : plan.near.rows.item) begins[std::size_t(n)] = ends[std::size_t(n)];
   for (Index32 const n : plan.near.rows.target) passes[std::size_t(n)] = 1;
-  double const nearest = 1e-14 * mesh_.size();
+  double const nearest = 1e-14 * extent_of(host_, mesh_.coordinates).size();
   std::vector<FieldReader> readers;
-  auto const add = [&](Index32 n, double share) {
-    readers.push_back({n, std::max(nearest, from_wall_.distance[std::size_t(n)]), share});
-  };
+  auto const add = [&](Index32 n) { readers.push_back({n, std::max(nearest, from_wall_.distance[std::size_t(n)])}); };
   for (Index32 const n : columns_.node)
-    if (begins[std::size_t(n)] != 0) add(n, 1);
+    if (begins[std::size_t(n)] != 0) add(n);
   plan.n_fitted_ends = Index(readers.size());
   plan.near_fade.assign(readers.size(), 0);
   for (std::size_t n = 0; n < n_nodes; ++n) {
     if (ends[n] != 0 || !is_moved(n) || !std::isfinite(from_wall_.distance[n])) continue;
-    double share = 0;
-    for (Index b = 0; b < all.size(); ++b) share += all.shift_share[std::size_t(b) * n_nodes + n];
-    if (!(share > 0)) continue;
-    add(Index32(n), std::min(1.0, share));
+    add(Index32(n));
     plan.near_fade.push_back(passes[n] != 0 ? float(fade(n)) : 0);
   }
-  plan.fit = make_least_squares_field(host_, mesh_.coordinates, plan.driving, areas(plan.driving), readers);
+  std::vector<RigidTransform> images = periodic_moves(host_, mesh_, out_.graph, out_.boundary, 2);
+  images.erase(images.begin());
+  auto const turns_freely = [&](WallBody const& body) { return mesh_.dimension == 2 || norm(body.axis) == 0; };
+  bool const taken_off =
+      all_walls_turn() && std::all_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(), turns_freely);
+  plan.fit = make_least_squares_field(host_, mesh_.coordinates, plan.driving, areas(plan.driving), images,
+                                      taken_off ? MeanTurn::taken_off : MeanTurn::left, readers);
 }
 
 void UnstructuredPlanner::plan_smooth_walls() {

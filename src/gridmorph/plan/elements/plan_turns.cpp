@@ -60,20 +60,29 @@ void UnstructuredPlanner::find_turning_bodies() {
   }
   wall_bodies_.bodies = std::move(turning);
   for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
-  if (options_.elements.method == NearFieldMethod::least_squares && !driving_faces_.empty()) {
-    std::size_t n_turning = 0;
-    for (WallBody const& body : wall_bodies_.bodies) n_turning += body.nodes.size();
-    char const* const why = options_.elements.background            ? "there is a background mesh of your own"
-                            : n_turning != out_.plan.driving.size() ? "not all moving walls are bodies that turn freely"
-                            : !out_.boundary.images.empty()         ? "the mesh has periodic connections"
-                                                                    : nullptr;
-    fitted_ = why == nullptr;
-    if (!fitted_)
-      out_.notes.push_back(std::string("near field: by the lattice in place of least squares, since ") + why);
-  }
+  fitted_ = out_.report.by_least_squares = goes_by_least_squares();
   if (wall_bodies_.bodies.empty()) return;
   add_other_boundaries();
   plan_stretches();
+}
+
+bool UnstructuredPlanner::all_walls_turn() const {
+  std::size_t n = 0;
+  for (WallBody const& body : wall_bodies_.bodies) n += body.nodes.size();
+  return n == out_.plan.driving.size();
+}
+
+bool UnstructuredPlanner::goes_by_least_squares() {
+  ElementOptions const& of = options_.elements;
+  if (driving_faces_.empty()) return false;
+  if (of.method == NearFieldMethod::least_squares && of.background)
+    out_.notes.push_back(
+        "near field: by the lattice in place of least squares, since there is a background mesh of your own");
+  if (of.background || of.method != NearFieldMethod::automatic)
+    return !of.background && of.method == NearFieldMethod::least_squares;
+  return !of.tube && all_walls_turn() &&
+         std::none_of(mesh_.connections.begin(), mesh_.connections.end(),
+                      [](Connection const& c) { return c.periodic.has_value(); });
 }
 
 void UnstructuredPlanner::add_turning_body(WallBody const& body) {

@@ -140,6 +140,10 @@ class UnstructuredPlanner {
   /// Finds the bodies that turn; needs the faces of the walls. What motion the offset and columns reckon with is then
   /// what turns leave of it.
   void find_turning_bodies();
+  /// Whether each moving wall is of a body that turns as a whole.
+  [[nodiscard]] bool all_walls_turn() const;
+  /// Whether least squares carry the walls' motion; notes where they were asked for and cannot.
+  [[nodiscard]] bool goes_by_least_squares();
   void add_turning_body(WallBody const& body);
   /// Adds all boundary nodes whose displacement is known but for those of the bodies: what shifts are measured against.
   void add_other_boundaries();
@@ -183,6 +187,8 @@ class UnstructuredPlanner {
   // plan_layers.cpp
   std::function<double(Index32, Index32)> layer_weight();
   void plan_layers();
+  /// Plans what carries the walls' motion through near elements, from layer to layer of them at least.
+  void plan_near(Mask const& seeds);
   /// Plans the smooth part of the walls' motion: it covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
   /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a
