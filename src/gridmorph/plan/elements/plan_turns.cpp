@@ -80,7 +80,8 @@ bool UnstructuredPlanner::goes_by_least_squares() {
         "near field: by the lattice in place of least squares, since there is a background mesh of your own");
   if (of.background || of.method != NearFieldMethod::automatic)
     return !of.background && of.method == NearFieldMethod::least_squares;
-  return !of.tube && all_walls_turn() &&
+  // Walls around the mesh are no bodies in it.
+  return !of.tube && all_walls_turn() && wall_bodies_.resting.faces.size() > 0 &&
          std::none_of(mesh_.connections.begin(), mesh_.connections.end(),
                       [](Connection const& c) { return c.periodic.has_value(); });
 }
