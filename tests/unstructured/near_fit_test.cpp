@@ -119,6 +119,10 @@ TEST(NearFit, IsTakenByItselfWhereWallsAreFreeBodiesAndNothingIsPeriodic) {
   PlanOptions tube;
   tube.elements.tube = true;
   EXPECT_FALSE(fits(c, by_places("airfoil", bent(0.1)), tube));
+  // Walls all around a mesh.
+  EXPECT_FALSE(fits(Case(to_hexahedra(unit_box({6, 6, 6}))), by_places("*", [](Vec3 const& p) {
+                      return Vec3{0, 0.01 * p.x * p.x, 0};
+                    })));
   auto const stands = [](Vec3 const& p) { return p.x > 3 && p.x < 5 && p.y > 3 && p.y < 5 && p.z < 3; };
   EXPECT_FALSE(fits(Case(box_around({8, 8, 6}, stands)), leaning()));
   EXPECT_FALSE(fits(Case(plane_cascade(section_of_wheel(11), turned_sides(2 * std::numbers::pi / 11))), bent_blades()));
