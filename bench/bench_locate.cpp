@@ -60,8 +60,7 @@ inline Mesh make_lattice(Lattice const& lattice) {
   for (Index e = 0; e < hexahedra.n_elements(); ++e) {
     auto const c = hexahedra.elements.corners(e);
     for (auto const& t : tetrahedra)
-      out.add_element(ElementType::tetrahedron, std::array{c[std::size_t(t[0])], c[std::size_t(t[1])],
-                                                           c[std::size_t(t[2])], c[std::size_t(t[3])]});
+      out.add_element(ElementType::tetrahedron, std::array{c[t[0]], c[t[1]], c[t[2]], c[t[3]]});
   }
   return out;
 }
@@ -81,7 +80,7 @@ inline std::vector<Vec3> make_points(Index n, bool outside) {
                  w = part(0.5497004779019703 * double(k));
     Vec3 p = place(0.001 + 0.998 * u, 0.001 + 0.998 * v, 0.001 + 0.998 * w);
     if (outside) p = place(u, v, 0) - Vec3{0, 0, 0.2 * w + 0.001};
-    points[std::size_t(k)] = p;
+    points[k] = p;
   }
   return points;
 }

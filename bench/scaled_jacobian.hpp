@@ -43,12 +43,12 @@ struct Verdict {
 /// out.
 inline Verdict judge(Mesh const& mesh, Coordinates const& x) {
   std::array<std::vector<std::array<int, 4>>, n_element_types> stars;
-  for (int t = 0; t < n_element_types; ++t) stars[std::size_t(t)] = corner_stars(ElementType(t));
+  for (int t = 0; t < n_element_types; ++t) stars[t] = corner_stars(ElementType(t));
   Vec3 const up = plane_normal(mesh);
   auto const scaled = [&](Index e, std::array<int, 4> const& star, Coordinates const& at) {
     auto const nodes = mesh.elements.corners(e);
-    Vec3 const p = at[nodes[std::size_t(star[0])]];
-    auto const edge = [&](int k) { return at[nodes[std::size_t(star[std::size_t(k)])]] - p; };
+    Vec3 const p = at[nodes[star[0]]];
+    auto const edge = [&](int k) { return at[nodes[star[k]]] - p; };
     Vec3 const a = edge(1), b = edge(2), c = star[3] < 0 ? up : edge(3);
     double const lengths = norm(a) * norm(b) * norm(c);
     return lengths > 0 ? dot(cross(a, b), c) / lengths : 2.0;
@@ -56,11 +56,11 @@ inline Verdict judge(Mesh const& mesh, Coordinates const& x) {
   Verdict out;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     double before = 0, least = 1;
-    for (auto const& star : stars[std::size_t(mesh.elements.type[std::size_t(e)])]) {
+    for (auto const& star : stars[std::size_t(mesh.elements.type[e])]) {
       double const s = scaled(e, star, mesh.coordinates);
       if (s <= 1) before += s;
     }
-    for (auto const& star : stars[std::size_t(mesh.elements.type[std::size_t(e)])])
+    for (auto const& star : stars[std::size_t(mesh.elements.type[e])])
       least = std::min(least, before < 0 ? -scaled(e, star, x) : scaled(e, star, x));
     if (least == -2) continue;
     out.smallest = std::min(out.smallest, least);

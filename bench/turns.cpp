@@ -112,10 +112,10 @@ class SplineFields {
   explicit SplineFields(Case const& c) : case_(c) {
     std::vector<Vec3> centres;
     std::vector<std::vector<Vec3>> given(c.amounts.size());
-    std::vector<char> seen(std::size_t(c.mesh.n_nodes()), 0);
+    std::vector<char> seen(c.mesh.n_nodes(), 0);
     for (Patch const& patch : c.mesh.patches)
       for (Index32 const n : patch_nodes(patch)) {
-        if (std::exchange(seen[std::size_t(n)], 1) != 0) continue;
+        if (std::exchange(seen[n], 1) != 0) continue;
         centres.push_back(c.mesh.coordinates[n]);
         for (std::size_t a = 0; a < given.size(); ++a) {
           Vec3 u;
@@ -126,7 +126,7 @@ class SplineFields {
       }
     n_centres = centres.size();
     ThinPlate const spline(std::move(centres), std::move(given), c.mesh.dimension);
-    fields_.resize(std::size_t(c.mesh.n_nodes()));
+    fields_.resize(c.mesh.n_nodes());
     Kokkos::parallel_for("gridmorph::bench::thin_plate", Kokkos::RangePolicy<Exec>(0, fields_.size()),
                          [&](std::size_t n) { fields_[n] = spline(c.mesh.coordinates[Index(n)]); });
     Exec().fence();
@@ -160,7 +160,7 @@ Mesh squares(int n_i, int n_j, int width, std::vector<std::array<int, 2>> const&
   };
   // The nodes that cells have.
   std::vector<Index32> number(std::size_t(n_i + 1) * std::size_t(n_j + 1), -1);
-  auto const node = [&](int i, int j) -> Index32& { return number[std::size_t(i + (n_i + 1) * j)]; };
+  auto const node = [&](int i, int j) -> Index32& { return number[i + (n_i + 1) * j]; };
   std::vector<Vec3> places;
   for (int j = 0; j <= n_j; ++j)
     for (int i = 0; i <= n_i; ++i) {

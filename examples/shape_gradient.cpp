@@ -136,9 +136,9 @@ int main(int argc, char** argv) {
 
   auto const morph = [&](Heights const& p) {
     for (Index m = 0; m < b.size(); ++m) {
-      Vec3 const at = mesh.coordinates[nodes[std::size_t(m)]];
+      Vec3 const at = mesh.coordinates[nodes[m]];
       double z = 0;
-      for (int w = 0; w < n_waves && on_floor(nodes[std::size_t(m)]); ++w) z += p[std::size_t(w)] * wave(w, at);
+      for (int w = 0; w < n_waves && on_floor(nodes[m]); ++w) z += p[w] * wave(w, at);
       b.set(m, {0, 0, z});
     }
     morpher.positions(exec, b, x);
@@ -152,8 +152,8 @@ int main(int argc, char** argv) {
     exec.fence();
     slope = {};
     for (Index m = 0; m < b.size(); ++m)
-      for (int w = 0; w < n_waves && on_floor(nodes[std::size_t(m)]); ++w)
-        slope[std::size_t(w)] += wave(w, mesh.coordinates[nodes[std::size_t(m)]]) * dJ_db[m].z;
+      for (int w = 0; w < n_waves && on_floor(nodes[m]); ++w)
+        slope[w] += wave(w, mesh.coordinates[nodes[m]]) * dJ_db[m].z;
     return J;
   };
 

@@ -43,7 +43,7 @@ gridmorph::Mesh box_around_a_body() {
       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
   // What is behind the sides of a hexahedron, in the order of the CGNS standard.
   constexpr std::array<Index3, 6> behind{{{0, 0, -1}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
-  std::vector<Index32> number(std::size_t((n + 1) * (n + 1) * (n + 1)), -1);
+  std::vector<Index32> number((n + 1) * (n + 1) * (n + 1), -1);
   std::vector<Vec3> points;
   std::vector<std::array<Index32, 8>> elements;
   gridmorph::Patch body, box;
@@ -59,7 +59,7 @@ gridmorph::Mesh box_around_a_body() {
         auto& nodes = elements.emplace_back();
         for (std::size_t c = 0; c < 8; ++c) {
           Index3 const at{i + corner[c][0], j + corner[c][1], k + corner[c][2]};
-          Index32& own = number[std::size_t(at[0] + (n + 1) * (at[1] + (n + 1) * at[2]))];
+          Index32& own = number[at[0] + (n + 1) * (at[1] + (n + 1) * at[2])];
           if (own < 0) {
             own = Index32(points.size());
             points.push_back({double(at[0]), double(at[1]), double(at[2])});
@@ -67,12 +67,11 @@ gridmorph::Mesh box_around_a_body() {
           nodes[c] = own;
         }
         for (int side = 0; side < 6; ++side) {
-          auto const& b = behind[std::size_t(side)];
+          auto const& b = behind[side];
           Cell const there = cell({i + b[0], j + b[1], k + b[2]});
           if (there == Cell::fluid) continue;
           std::array<Index32, 4> face;
-          for (int c = 0; c < 4; ++c)
-            face[std::size_t(c)] = nodes[std::size_t(gridmorph::face_corner(hexahedron, side, c))];
+          for (int c = 0; c < 4; ++c) face[c] = nodes[gridmorph::face_corner(hexahedron, side, c)];
           (there == Cell::body ? body : box).faces.add(face);
         }
       }
@@ -136,7 +135,7 @@ int main(int argc, char** argv) {
     auto const moved = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), now);
     double largest = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      Vec3 const u = amplitude * heave[k], wanted = points[std::size_t(nodes[k])] + u;
+      Vec3 const u = amplitude * heave[k], wanted = points[nodes[k]] + u;
       worst = std::max(worst, gridmorph::distance(moved(nodes[k]), wanted));
       largest = std::max(largest, gridmorph::norm(u));
     }

@@ -156,7 +156,7 @@ Mesh Blocks::mesh(double first_cell) const {
   Index3 const all = lattice_.extent();
   Index const n_lattice = Index(all[0]) * all[1] * all[2];
   auto const identity = [&](int zone, Index3 const& stored) {
-    Block const& block = blocks_[std::size_t(zone)];
+    Block const& block = blocks_[zone];
     Index3 const own = unstored(block, stored);
     Index const node = lattice_.number(on_lattice(block, own));
     if (block.wall == nullptr || own[2] == lattice_.layers) return node;
@@ -165,7 +165,7 @@ Mesh Blocks::mesh(double first_cell) const {
   mesh.families = {"fuselage", "wing", "aileron", "htail", "vtail", "nacelle", "symmetry", "farfield"};
   std::map<std::string, int> count;
   for (demo::OpenFace const& face : demo::join_by_nodes(mesh, identity)) {
-    Block const& block = blocks_[std::size_t(face.zone)];
+    Block const& block = blocks_[face.zone];
     Index3 const own = unstored(block, face.range.begin);
     Index3 middle{};
     for (int a = 0; a < 3; ++a) middle[a] = (face.range.begin[a] + face.range.end[a] - 1) / 2;

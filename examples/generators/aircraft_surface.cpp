@@ -263,10 +263,10 @@ Surface::Surface(Lattice const& lattice, std::vector<WallFace> const& faces, dou
 }
 
 Vec3 Surface::position(int number, int layer) const {
-  if (layer == 0) return on_body_[std::size_t(number)];
-  if (layer == layers_) return on_lattice_[std::size_t(number)];
+  if (layer == 0) return on_body_[number];
+  if (layer == layers_) return on_lattice_[number];
   double const s = share_[std::size_t(number) * std::size_t(layers_ + 1) + std::size_t(layer)];
-  return (1 - s) * on_body_[std::size_t(number)] + s * on_lattice_[std::size_t(number)];
+  return (1 - s) * on_body_[number] + s * on_lattice_[number];
 }
 
 }  // namespace gridmorph::aircraft

@@ -89,7 +89,7 @@ Mesh make_airfoil(AirfoilOptions const& options) {
   for (int i = 0; i <= half; ++i) wall.push_back(section.at(section.end() * i / half));
   wall.front().real(0);
   auto const behind = growing(section.end() / half, height, options.wake);
-  for (int i = 1; i <= options.wake; ++i) wall.emplace_back(section.end() + behind[std::size_t(i)], 0);
+  for (int i = 1; i <= options.wake; ++i) wall.emplace_back(section.end() + behind[i], 0);
   auto const up = growing(options.first_cell, height, options.across);
 
   Mesh mesh;
@@ -106,8 +106,8 @@ Mesh make_airfoil(AirfoilOptions const& options) {
   for (int i = 0; i < columns; ++i) {
     int const k = std::abs(i - side);
     for (int j = 0; j < rows; ++j) {
-      Complex w = wall[std::size_t(k)];
-      w += Complex(0, (height - w.imag()) * up[std::size_t(j)] / height);
+      Complex w = wall[k];
+      w += Complex(0, (height - w.imag()) * up[j] / height);
       Complex const z = section.place(w);
       // Columns go from the wake of the lower side around the nose to that of the upper one.
       mesh.coordinates.set(node(i, j), {z.real(), i < side ? -z.imag() : z.imag(), 0});

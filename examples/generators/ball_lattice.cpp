@@ -76,8 +76,7 @@ std::vector<Vec3> BallLattice::nodes() const {
   for (int k = 0; k <= n(2); ++k)
     for (int j = 0; j <= n(1); ++j)
       for (int i = 0; i <= n(0); ++i)
-        if (node(i, j, k) >= 0)
-          nodes.push_back({lines_[0][std::size_t(i)], lines_[1][std::size_t(j)], lines_[2][std::size_t(k)]});
+        if (node(i, j, k) >= 0) nodes.push_back({lines_[0][i], lines_[1][j], lines_[2][k]});
   return nodes;
 }
 
@@ -94,12 +93,12 @@ void BallLattice::add_to(HybridMesh& mesh, BallPatches const& patches) const {
     Hex const hex = corners(i, j, k);
     mesh.add_tetrahedra(hex);
     for (int f = 0; f < 6; ++f) {
-      auto const& to = across[std::size_t(f)];
+      auto const& to = across[f];
       Cell const behind = cell(i + to[0], j + to[1], k + to[2]);
       if (behind == Cell::fluid || behind == Cell::tube) continue;
       Quad quad;
-      for (int c = 0; c < 4; ++c) quad[std::size_t(c)] = hex[std::size_t(face_corner(ElementType::hexahedron, f, c))];
-      mesh.add_triangles(behind == Cell::crane ? patches.crane : box[std::size_t(f)], quad);
+      for (int c = 0; c < 4; ++c) quad[c] = hex[face_corner(ElementType::hexahedron, f, c)];
+      mesh.add_triangles(behind == Cell::crane ? patches.crane : box[f], quad);
     }
   });
 }

@@ -45,7 +45,7 @@ void BallTube::make_rings(BallOptions const& options) {
   auto const on_rope = counts_.rings_on_rope.nodes(0, length, counts_.rope);
   for (int j = 1; j <= counts_.upper + counts_.rope; ++j) {
     bool const ball = j <= counts_.upper;
-    double const way = ball ? arc * j / counts_.upper : arc + on_rope[std::size_t(j - counts_.upper)];
+    double const way = ball ? arc * j / counts_.upper : arc + on_rope[j - counts_.upper];
     double const turned = smooth_step((way - arc + turn) / (2 * turn));
     Ring ring;
     ring.elevation = (1 - turned) * std::min(way, arc);
@@ -130,7 +130,7 @@ void BallTube::append_curved(Ring const& ring, Vec3 const& end, std::vector<Vec3
   for (int l = 0; l < int(heights.size()) - 1; ++l) {
     double r = ring.r + counts_.layers.at(l) * up_r, z = ring.z + counts_.layers.at(l) * up_z;
     if (l > counts_.layers.n) {
-      double const t = (heights[std::size_t(l)] * (thick + way) - thick) / way, bent = bend * t * t * (1 - t);
+      double const t = (heights[l] * (thick + way) - thick) / way, bent = bend * t * t * (1 - t);
       r = from_r + t * way_r - bent * (way - way_r);
       z = from_z + t * way_z + bent * way_z;
     }
@@ -141,16 +141,16 @@ void BallTube::append_curved(Ring const& ring, Vec3 const& end, std::vector<Vec3
 std::vector<Vec3> BallTube::nodes() const {
   int const m = counts_.side;
   std::vector<Vec3> nodes;
-  auto const side = [&](int i) { return across_[std::size_t(i)]; };
+  auto const side = [&](int i) { return across_[i]; };
   for (int iy = 0; iy <= m; ++iy)
     for (int ix = 0; ix <= m; ++ix) append_straight({side(ix), side(iy), along_.front()}, nodes);
   for (int ring = 1; ring <= counts_.rings(); ++ring)
     for (int at = 0; at < 4 * m; ++at) {
-      Vec3 const end{side(corner(at).x), side(corner(at).y), along_[std::size_t(ring)]};
+      Vec3 const end{side(corner(at).x), side(corner(at).y), along_[ring]};
       if (ring <= counts_.lower)
         append_straight(end, nodes);
       else
-        append_curved(upper_[std::size_t(ring - counts_.lower - 1)], end, nodes);
+        append_curved(upper_[ring - counts_.lower - 1], end, nodes);
     }
   return nodes;
 }

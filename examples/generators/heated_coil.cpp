@@ -50,7 +50,7 @@ Section on_square(int q, double half) {
   int const s = (q / side) % 4;
   double const t = half * (2.0 * (q % side) / side - 1);
   std::array<Section, 4> const at{{{half, t}, {-t, half}, {-half, -t}, {t, -half}}};
-  return {tube_z + at[std::size_t(s)].z, tube_r + at[std::size_t(s)].r};
+  return {tube_z + at[s].z, tube_r + at[s].r};
 }
 
 Vec3 swept(Section const& p, int step) {
@@ -104,7 +104,7 @@ class Fluid {
     for (int l = 0; l < levels; ++l)
       for (int q = 0; q < around; ++q) {
         Section const top = on_circle(q, tube + layer.back());
-        swept_.add(l <= layers ? on_circle(q, tube + layer[std::size_t(l)])
+        swept_.add(l <= layers ? on_circle(q, tube + layer[l])
                                : mix(top, on_square(q, 0.5 * (duct - body)), double(l - layers) / beyond),
                    q, l);
       }
@@ -154,7 +154,7 @@ class Fluid {
 
   /// Nodes along the duct at height j, in the sense of z; the one on the square is there already.
   std::vector<int> row(int j, int cells, double end, int on_square) {
-    Section const near = swept_.section[std::size_t(on_square)];
+    Section const near = swept_.section[on_square];
     Section const far{end, body + j * (duct - body) / side};
     std::vector<int> out;
     for (int i = 0; i <= cells; ++i) {
@@ -203,9 +203,9 @@ Mesh make_solid() {
                                        : swept.add(mix(on_square(q, half), on_circle(q, tube), double(l) / rings)));
   }
   auto const core = [&](int i, int j) {
-    if (i == side) return ring[0][std::size_t(j)];
-    if (j == side) return ring[0][std::size_t(side + side - i)];
-    if (i == 0) return ring[0][std::size_t(2 * side + side - j)];
+    if (i == side) return ring[0][j];
+    if (j == side) return ring[0][side + side - i];
+    if (i == 0) return ring[0][2 * side + side - j];
     if (j == 0) return ring[0][std::size_t(3 * side + i) % around];
     return -1;
   };
@@ -213,9 +213,9 @@ Mesh make_solid() {
   std::vector<std::vector<int>> inner(side + 1, std::vector<int>(side + 1));
   for (int j = 0; j <= side; ++j)
     for (int i = 0; i <= side; ++i)
-      inner[std::size_t(j)][std::size_t(i)] =
-          core(i, j) >= 0 ? core(i, j)
-                          : swept.add({tube_z + half * (2.0 * i / side - 1), tube_r + half * (2.0 * j / side - 1)});
+      inner[j][i] = core(i, j) >= 0
+                        ? core(i, j)
+                        : swept.add({tube_z + half * (2.0 * i / side - 1), tube_r + half * (2.0 * j / side - 1)});
   for (std::size_t j = 0; j < side; ++j)
     for (std::size_t i = 0; i < side; ++i)
       cells.push_back({inner[j][i], inner[j][i + 1], inner[j + 1][i + 1], inner[j + 1][i]});
@@ -248,7 +248,7 @@ void append(Mesh& mesh, Mesh const& zone) {
   for (Index e = 0; e < zone.n_elements(); ++e) {
     std::vector<Index32> nodes(zone.elements.nodes[e].begin(), zone.elements.nodes[e].end());
     for (Index32& n : nodes) n += shift;
-    mesh.add_element(zone.elements.type[std::size_t(e)], nodes);
+    mesh.add_element(zone.elements.type[e], nodes);
   }
   for (Patch patch : zone.patches) {
     patch.zone = z;

@@ -13,8 +13,8 @@ namespace gridmorph::demo {
 namespace {
 
 double volume(std::span<Vec3 const> x, std::array<Index32, 4> const& t) {
-  Vec3 const a = x[std::size_t(t[0])];
-  return dot(cross(x[std::size_t(t[1])] - a, x[std::size_t(t[2])] - a), x[std::size_t(t[3])] - a);
+  Vec3 const a = x[t[0]];
+  return dot(cross(x[t[1]] - a, x[t[2]] - a), x[t[3]] - a);
 }
 
 /// A uniform number in [-1, 1) that belongs to one component of one node.
@@ -36,14 +36,14 @@ template <class List>
 void reorder(List& list, std::uint64_t seed) {
   auto const order = random_order(list.size(), seed);
   List moved(list.size());
-  for (std::size_t e = 0; e < list.size(); ++e) moved[e] = list[std::size_t(order[e])];
+  for (std::size_t e = 0; e < list.size(); ++e) moved[e] = list[order[e]];
   list = std::move(moved);
 }
 
 }  // namespace
 
 bool HybridMesh::cut_02(Index32 a, Index32 b, Index32 c, Index32 d) const {
-  auto const rank = [&](Index32 n) { return rank_[std::size_t(n)]; };
+  auto const rank = [&](Index32 n) { return rank_[n]; };
   return std::min(rank(a), rank(c)) < std::min(rank(b), rank(d));
 }
 
@@ -63,11 +63,11 @@ void HybridMesh::add_prisms(Hex const& h) {
 }
 
 void HybridMesh::add_tetrahedra(Hex const& h) {
-  Index32 const first = *std::min_element(
-      h.begin(), h.end(), [&](Index32 a, Index32 b) { return rank_[std::size_t(a)] < rank_[std::size_t(b)]; });
+  Index32 const first =
+      *std::min_element(h.begin(), h.end(), [&](Index32 a, Index32 b) { return rank_[a] < rank_[b]; });
   for (int f = 0; f < n_faces(ElementType::hexahedron); ++f) {
     Quad q;
-    for (int c = 0; c < 4; ++c) q[std::size_t(c)] = h[std::size_t(face_corner(ElementType::hexahedron, f, c))];
+    for (int c = 0; c < 4; ++c) q[c] = h[face_corner(ElementType::hexahedron, f, c)];
     if (std::find(q.begin(), q.end(), first) != q.end()) continue;
     // Seen from the corner inside, the outward faces turn the other way round.
     for (auto const& t : triangles(q)) tetrahedra_.push_back({t[0], t[2], t[1], first});
@@ -76,14 +76,14 @@ void HybridMesh::add_tetrahedra(Hex const& h) {
 
 void HybridMesh::add_pyramid(Hex const& h) {
   Vec3 middle;
-  for (Index32 const n : h) middle += 0.125 * nodes_[std::size_t(n)];
+  for (Index32 const n : h) middle += 0.125 * nodes_[n];
   auto const apex = Index32(nodes_.size());
   nodes_.push_back(middle);
   rank_.push_back(rank_of(apex));
   pyramids_.push_back({h[0], h[1], h[2], h[3], apex});
   for (int f = 1; f < n_faces(ElementType::hexahedron); ++f) {
     Quad q;
-    for (int c = 0; c < 4; ++c) q[std::size_t(c)] = h[std::size_t(face_corner(ElementType::hexahedron, f, c))];
+    for (int c = 0; c < 4; ++c) q[c] = h[face_corner(ElementType::hexahedron, f, c)];
     for (auto const& t : triangles(q)) tetrahedra_.push_back({t[0], t[2], t[1], apex});
   }
 }
@@ -101,7 +101,7 @@ int HybridMesh::add_patch(std::string const& name, PatchKind kind, std::string c
 }
 
 void HybridMesh::add_triangles(int patch, Quad const& quad) {
-  for (auto const& t : triangles(quad)) faces_[std::size_t(patch)].push_back({t[0], t[1], t[2], -1});
+  for (auto const& t : triangles(quad)) faces_[patch].push_back({t[0], t[1], t[2], -1});
 }
 
 std::vector<std::uint8_t> HybridMesh::free_nodes() const {
@@ -109,7 +109,7 @@ std::vector<std::uint8_t> HybridMesh::free_nodes() const {
   auto const hold = [&](auto const& lists) {
     for (auto const& list : lists)
       for (Index32 const n : list)
-        if (n >= 0) free[std::size_t(n)] = 0;
+        if (n >= 0) free[n] = 0;
   };
   hold(pyramids_);
   hold(prisms_);
@@ -125,8 +125,8 @@ void HybridMesh::jitter(double amount) {
   std::vector<float> reach(nodes_.size(), std::numeric_limits<float>::max());
   for (auto const& t : tetrahedra_)
     for (int e = 0; e < 6; ++e) {
-      auto const a = std::size_t(t[std::size_t(edge_corner(ElementType::tetrahedron, e, 0))]);
-      auto const b = std::size_t(t[std::size_t(edge_corner(ElementType::tetrahedron, e, 1))]);
+      auto const a = std::size_t(t[edge_corner(ElementType::tetrahedron, e, 0)]);
+      auto const b = std::size_t(t[edge_corner(ElementType::tetrahedron, e, 1)]);
       auto const length = float(distance(nodes_[a], nodes_[b]));
       reach[a] = std::min(reach[a], length);
       reach[b] = std::min(reach[b], length);
@@ -143,7 +143,7 @@ void HybridMesh::jitter(double amount) {
       double const before = volume(nodes_, t);
       if (volume(moved, t) >= std::min(kept_volume * before, before)) continue;
       good = 0;
-      for (Index32 const n : t) reach[std::size_t(n)] *= attempt < halvings ? 0.5F : 0.F;
+      for (Index32 const n : t) reach[n] *= attempt < halvings ? 0.5F : 0.F;
     }
   }
   nodes_ = std::move(moved);
@@ -152,12 +152,12 @@ void HybridMesh::jitter(double amount) {
 void HybridMesh::shuffle() {
   auto const number = random_order(nodes_.size(), 1);
   std::vector<Vec3> moved(nodes_.size());
-  for (std::size_t n = 0; n < nodes_.size(); ++n) moved[std::size_t(number[n])] = nodes_[n];
+  for (std::size_t n = 0; n < nodes_.size(); ++n) moved[number[n]] = nodes_[n];
   nodes_ = std::move(moved);
   auto const renumber = [&](auto& lists) {
     for (auto& list : lists)
       for (Index32& n : list)
-        if (n >= 0) n = number[std::size_t(n)];
+        if (n >= 0) n = number[n];
   };
   renumber(tetrahedra_);
   renumber(pyramids_);

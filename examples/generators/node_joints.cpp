@@ -29,9 +29,9 @@ struct Face {
         side(number % 2),
         along_u((axis + 1) % 3),
         along_v((axis + 2) % 3),
-        extent(mesh.zones[std::size_t(zone)].extent),
-        cells_u(extent[std::size_t(along_u)] - 1),
-        cells_v(extent[std::size_t(along_v)] - 1) {}
+        extent(mesh.zones[zone].extent),
+        cells_u(extent[along_u] - 1),
+        cells_v(extent[along_v] - 1) {}
   [[nodiscard]] Index3 node(int u, int v) const {
     Index3 p{};
     p[axis] = side ? extent[axis] - 1 : 0;
@@ -73,7 +73,7 @@ class NodeJoints {
     std::vector<FaceCell> cells = sorted_cells();
     for (int f = 0; f < n_faces_; ++f) {
       Face const face(mesh_, f);
-      partner_[std::size_t(f)].resize(std::size_t(face.cells_u) * std::size_t(face.cells_v));
+      partner_[f].resize(std::size_t(face.cells_u) * std::size_t(face.cells_v));
     }
     for (std::size_t c = 1; c < cells.size(); ++c)
       if (cells[c].nodes == cells[c - 1].nodes) {
@@ -90,8 +90,7 @@ class NodeJoints {
       for (int v = 0; v < face.cells_v; ++v)
         for (int u = 0; u < face.cells_u; ++u) {
           FaceCell cell{{}, f, u, v};
-          for (int c = 0; c < 4; ++c)
-            cell.nodes[std::size_t(c)] = identity_(face.zone, face.node(u + c % 2, v + c / 2));
+          for (int c = 0; c < 4; ++c) cell.nodes[c] = identity_(face.zone, face.node(u + c % 2, v + c / 2));
           std::sort(cell.nodes.begin(), cell.nodes.end());
           cells.push_back(cell);
         }
@@ -101,13 +100,13 @@ class NodeJoints {
   }
 
   Partner& at(int f, int u, int v) {
-    return partner_[std::size_t(f)][std::size_t(u) + std::size_t(v) * std::size_t(Face(mesh_, f).cells_u)];
+    return partner_[f][std::size_t(u) + std::size_t(v) * std::size_t(Face(mesh_, f).cells_u)];
   }
 
   /// Covers a face with rectangles: each is joined or open.
   void take_face(int f) {
     Face const face(mesh_, f);
-    std::vector<char> done(partner_[std::size_t(f)].size(), 0);
+    std::vector<char> done(partner_[f].size(), 0);
     auto const number = [&](int u, int v) { return std::size_t(u) + std::size_t(v) * std::size_t(face.cells_u); };
     for (int v = 0; v < face.cells_v; ++v)
       for (int u = 0; u < face.cells_u; ++u) {
@@ -147,7 +146,7 @@ class NodeJoints {
     Interface1to1 joint;
     joint.zone = face.zone;
     joint.donor_zone = other.zone;
-    joint.name = "joint_" + std::to_string(++joints_[std::size_t(face.zone)]);
+    joint.name = "joint_" + std::to_string(++joints_[face.zone]);
     joint.range = nodes(face, cells);
     joint.to_donor.own_origin = face.node(cells.u, cells.v);
     // Where three corners of the first cell are in the donor.
@@ -165,7 +164,7 @@ class NodeJoints {
     follow(face.along_v, in_donor(cells.u, cells.v + 1));
     orientation.axis[face.axis] = other.axis;
     orientation.sign[face.axis] = face.side != other.side ? 1 : -1;
-    join(mesh_, joint, "joint_" + std::to_string(++joints_[std::size_t(other.zone)]));
+    join(mesh_, joint, "joint_" + std::to_string(++joints_[other.zone]));
   }
 
   /// The corner of a cell that is a node.

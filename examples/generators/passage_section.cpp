@@ -223,9 +223,9 @@ class PassageSection {
     auto const ring = [&](Piece piece, auto const& phi_of) {
       PieceNodes& nodes = pieces[piece];
       std::vector<double>& places = ring_phi[piece];
-      places.resize(std::size_t(nodes.ni));
+      places.resize(nodes.ni);
       for (int i = 0; i < nodes.ni; ++i) {
-        double const phi = places[std::size_t(i)] = phi_of(i);
+        double const phi = places[i] = phi_of(i);
         Point2 const wall = airfoil_.point(phi), normal = normal_at(airfoil_, phi);
         for (int k = 0; k < nodes.nk; ++k) nodes.at(i, k) = wall + (off_wall[k] * thickness) * normal;
       }

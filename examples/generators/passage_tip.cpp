@@ -38,12 +38,12 @@ void fill_tip(PassageOptions const& options, Airfoil const& airfoil, std::array<
   auto const side = [&](std::vector<double> const& phi, int i, int last) {
     double const first_u = along_camber(phi.front()), last_u = along_camber(phi.back());
     bool const forward = last_u > first_u;
-    double const share = (along_camber(phi[std::size_t(i)]) - first_u) / (last_u - first_u);
+    double const share = (along_camber(phi[i]) - first_u) / (last_u - first_u);
     double const u = i == 0      ? (forward ? begin : end)
                      : i == last ? (forward ? end : begin)
                      : forward   ? begin + share * (end - begin)
                                  : end + share * (begin - end);
-    return airfoil.off_camber(u, options.tip_core * airfoil.half_thickness(phi[std::size_t(i)]));
+    return airfoil.off_camber(u, options.tip_core * airfoil.half_thickness(phi[i]));
   };
   int const ni = core.ni, nk = core.nk;
   for (int i = 0; i < ni; ++i) {
@@ -52,8 +52,7 @@ void fill_tip(PassageOptions const& options, Airfoil const& airfoil, std::array<
   }
 
   PieceNodes const& widest = pieces[tip_upper];
-  double const width =
-      (1 - options.tip_core) * std::abs(airfoil.half_thickness(ring_phi[ring_upper][std::size_t(ni / 2)]));
+  double const width = (1 - options.tip_core) * std::abs(airfoil.half_thickness(ring_phi[ring_upper][ni / 2]));
   double const first = std::max(options.first_cell * airfoil.chord() / width,
                                 demo::first_of_geometric(widest.nk - 1, options.max_growth));
   std::vector<double> const off_contour = demo::geometric_spacing(widest.nk - 1, first);
@@ -61,8 +60,7 @@ void fill_tip(PassageOptions const& options, Airfoil const& airfoil, std::array<
     PieceNodes& nodes = pieces[over_tip(ring)];
     for (int i = 0; i < nodes.ni; ++i) {
       Point2 const inside = core_node(i), contour = pieces[ring].at(i, 0);
-      for (int k = 0; k < nodes.nk; ++k)
-        nodes.at(i, k) = contour + off_contour[std::size_t(nodes.nk - 1 - k)] * (inside - contour);
+      for (int k = 0; k < nodes.nk; ++k) nodes.at(i, k) = contour + off_contour[nodes.nk - 1 - k] * (inside - contour);
       nodes.at(i, 0) = inside;
     }
   };

@@ -84,7 +84,7 @@ struct Found {
 
 Found find(PassageLayout const& layout, Piece piece, int bottom, int top) {
   for (int z = 0; z < int(layout.zones.size()); ++z) {
-    ZoneLayout const& zone = layout.zones[std::size_t(z)];
+    ZoneLayout const& zone = layout.zones[z];
     if (zone.bottom > bottom || zone.top < top) continue;
     for (PiecePlace const& p : zone.pieces)
       if (p.piece == piece) return {z, p, bottom, top};
@@ -95,7 +95,7 @@ Found find(PassageLayout const& layout, Piece piece, int bottom, int top) {
 /// Nodes of an edge over these stations, in its zone.
 IndexRange edge_range(PassageLayout const& layout, Found const& found, Edge const& edge) {
   auto const [ni, nk] = piece_cells(layout.counts, edge.piece);
-  ZoneLayout const& zone = layout.zones[std::size_t(found.zone)];
+  ZoneLayout const& zone = layout.zones[found.zone];
   int const j0 = layout.j_of(zone, found.bottom), j1 = layout.j_of(zone, found.top);
   IndexRange r{{found.place.i, std::min(j0, j1), found.place.k},
                {found.place.i + ni + 1, std::max(j0, j1) + 1, found.place.k + nk + 1}};
@@ -185,8 +185,7 @@ void add_patch(Mesh& mesh, int zone, std::string const& family, IndexRange const
     return;
   }
   std::string const number = of_family > 1 ? "_" + std::to_string(of_family) : "";
-  mesh.patches.push_back(
-      {family + "_" + mesh.zones[std::size_t(zone)].name + number, type, kind, {family}, zone, range});
+  mesh.patches.push_back({family + "_" + mesh.zones[zone].name + number, type, kind, {family}, zone, range});
 }
 
 /// Angles about x, y, z whose rotations, applied in this order, make the matrix (CGNS SIDS RotationAngle).
@@ -271,8 +270,8 @@ void add_patches(Mesh& mesh, PassageLayout const& layout) {
     }
   int const tip = layout.counts.span - layout.counts.gap;
   for (int z = 0; z < int(layout.zones.size()); ++z) {
-    ZoneLayout const& zone = layout.zones[std::size_t(z)];
-    Index3 const n = mesh.zones[std::size_t(z)].extent;
+    ZoneLayout const& zone = layout.zones[z];
+    Index3 const n = mesh.zones[z].extent;
     auto const whole_face = [&](int station) {
       int const j = layout.j_of(zone, station);
       return IndexRange{{0, j, 0}, {n[0], j + 1, n[2]}};
@@ -291,9 +290,9 @@ namespace {
 void join_along_span(Mesh& mesh, PassageLayout const& layout) {
   for (int a = 0; a < int(layout.zones.size()); ++a)
     for (int b = 0; b < int(layout.zones.size()); ++b) {
-      ZoneLayout const &low = layout.zones[std::size_t(a)], &high = layout.zones[std::size_t(b)];
+      ZoneLayout const &low = layout.zones[a], &high = layout.zones[b];
       if (low.pieces.front().piece != high.pieces.front().piece || low.top != high.bottom) continue;
-      Index3 const n = mesh.zones[std::size_t(a)].extent;
+      Index3 const n = mesh.zones[a].extent;
       int const j = layout.j_of(low, low.top);
       Interface1to1 face{"to_" + high.name, {}, a, b, {{0, j, 0}, {n[0], j + 1, n[2]}}, {}, {}};
       face.to_donor.own_origin = {0, j, 0};

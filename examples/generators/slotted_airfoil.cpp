@@ -191,8 +191,8 @@ void place_nodes(Mesh& mesh, Zone const& zone, Grid const& grid) {
   auto const across = demo::geometric_spacing(grid.cells, grid.first);
   for (int k = 0; k <= grid.cells; ++k)
     for (int j = 0; j < zone.extent[1]; ++j) {
-      double const s = k == 0 ? 0 : k == grid.cells ? 1 : across[std::size_t(k)];
-      Point const p = (1 - s) * grid.inner[std::size_t(j)] + s * grid.outer[std::size_t(j)];
+      double const s = k == 0 ? 0 : k == grid.cells ? 1 : across[k];
+      Point const p = (1 - s) * grid.inner[j] + s * grid.outer[j];
       for (int i : {0, 1}) mesh.coordinates.set(zone.node({i, j, k}), {p.x, -double(i), p.z});
     }
 }
@@ -209,8 +209,8 @@ constexpr Joint joints[] = {{0, 0, 0, 24, 0, 0, 122, false},    {1, 0, 0, 56, 1,
                             {1, 1, 158, 274, 2, 1, 116, false}, {2, 1, 116, 288, 3, 0, 148, true}};
 
 void add_interface(Mesh& mesh, Joint const& joint) {
-  Zone const& own = mesh.zones[std::size_t(joint.zone)];
-  Zone const& donor = mesh.zones[std::size_t(joint.donor)];
+  Zone const& own = mesh.zones[joint.zone];
+  Zone const& donor = mesh.zones[joint.donor];
   Interface1to1 face;
   face.name = "to_" + donor.name + "_from_" + std::to_string(joint.from + 1);
   face.zone = joint.zone;
@@ -225,7 +225,7 @@ void add_interface(Mesh& mesh, Joint const& joint) {
 }
 
 void add_patches(Mesh& mesh, int z, Grid const& grid) {
-  Zone const& zone = mesh.zones[std::size_t(z)];
+  Zone const& zone = mesh.zones[z];
   auto const add = [&](char const* name, char const* type, PatchKind kind, IndexRange const& range) {
     mesh.patches.push_back({name, type, kind, {}, z, range});
   };

@@ -116,10 +116,10 @@ class CubeSurface {
   [[nodiscard]] Quad quad(int side, int a, int b) const {
     int const axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     std::array<int, 3> at{};
-    at[std::size_t(axis)] = side % 2 == 1 ? m_ : 0;
+    at[axis] = side % 2 == 1 ? m_ : 0;
     auto const corner = [&](int da, int db) {
-      at[std::size_t(u)] = a + da;
-      at[std::size_t(v)] = b + db;
+      at[u] = a + da;
+      at[v] = b + db;
       return column_[place(at)];
     };
     if (side % 2 == 1) return {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};

@@ -22,7 +22,7 @@ std::vector<double> column_heights(LayerHeights const& layers, int n, double len
   for (int l = 0; l <= layers.n; ++l) heights.push_back(layers.at(l) / length);
   double const rest = 1 - heights.back();
   auto const beyond = geometric_spacing(n, layers.last() * layers.growth / (rest * length));
-  for (int l = 1; l <= n; ++l) heights.push_back(heights[std::size_t(layers.n)] + rest * beyond[std::size_t(l)]);
+  for (int l = 1; l <= n; ++l) heights.push_back(heights[layers.n] + rest * beyond[l]);
   heights.back() = 1;
   return heights;
 }
@@ -31,7 +31,7 @@ int first_tall_cell(LayerHeights const& layers, std::vector<double> const& heigh
   constexpr double tall = 0.3;
   auto const last = int(heights.size()) - 1;
   for (int l = layers.n; l < last; ++l)
-    if ((heights[std::size_t(l) + 1] - heights[std::size_t(l)]) * length >= tall * width) return l;
+    if ((heights[l + 1] - heights[l]) * length >= tall * width) return l;
   return last;
 }
 

@@ -65,12 +65,12 @@ void place_nodes(Mesh& mesh, Zone const& zone, Part const& part) {
   for (int k = 0; k <= spanwise; ++k)
     for (int j = 0; j <= part.cells; ++j)
       for (int i = 0; i <= across; ++i) {
-        double const r = k == 0 ? hub : k == spanwise ? casing : hub + span[std::size_t(k)] * (casing - hub);
+        double const r = k == 0 ? hub : k == spanwise ? casing : hub + span[k] * (casing - hub);
         double const z = j == 0            ? part.low
                          : j == part.cells ? part.high
                                            : part.low + j * (part.high - part.low) / part.cells;
         double const half = half_thickness_deg(part.row, z);
-        double const degrees = camber_deg(part.row, z, r) + half + around[std::size_t(i)] * (pitch_deg - 2 * half);
+        double const degrees = camber_deg(part.row, z, r) + half + around[i] * (pitch_deg - 2 * half);
         double const angle = degrees * std::numbers::pi / 180;
         mesh.coordinates.set(zone.node({i, j, k}), {r * std::cos(angle), r * std::sin(angle), z});
       }
@@ -88,7 +88,7 @@ void add_patches(Mesh& mesh, int z, Part const& part) {
                              : f == "OUTLET" ? "BCOutflow"
                              : f == "MIXING" ? "BCGeneral"
                                              : "BCWall";
-    mesh.patches.push_back({name, type, kind, {f}, z, demo::whole_face(mesh.zones[std::size_t(z)], axis, side)});
+    mesh.patches.push_back({name, type, kind, {f}, z, demo::whole_face(mesh.zones[z], axis, side)});
   };
   char const* const blade = !part.blade ? "" : part.row == Row::vanes ? "BLADE_GV" : "BLADE_RU";
   add("ps", blade, 0, 0);
@@ -100,7 +100,7 @@ void add_patches(Mesh& mesh, int z, Part const& part) {
 }
 
 void add_interfaces(Mesh& mesh, int z, Part const& part) {
-  Zone const& zone = mesh.zones[std::size_t(z)];
+  Zone const& zone = mesh.zones[z];
   if (!part.blade) {
     double const pitch = pitch_deg * std::numbers::pi / 180;
     auto const turn = [&](double angle) { return periodic_rotation({}, {0, 0, 1}, angle); };
@@ -133,7 +133,7 @@ Mesh make_water_turbine() {
   for (Part const& part : parts) mesh.add_zone(part.name, {across + 1, part.cells + 1, spanwise + 1});
   mesh.coordinates = Coordinates(mesh.n_nodes());
   for (int z = 0; z < int(std::size(parts)); ++z) {
-    place_nodes(mesh, mesh.zones[std::size_t(z)], parts[z]);
+    place_nodes(mesh, mesh.zones[z], parts[z]);
     add_patches(mesh, z, parts[z]);
     add_interfaces(mesh, z, parts[z]);
   }

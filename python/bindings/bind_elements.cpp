@@ -94,14 +94,14 @@ void add_by_faces(Mesh& mesh, Faces const& given) {
                     std::to_string(faces.size()) + " faces");
   std::int64_t n_elements = 0;
   for (Index f = 0; f < faces.size(); ++f)
-    n_elements = std::max({n_elements, list(owner)[std::size_t(f)] + 1, list(neighbour)[std::size_t(f)] + 1});
+    n_elements = std::max({n_elements, list(owner)[f] + 1, list(neighbour)[f] + 1});
   if (n_elements > 2 * faces.size())
     throw MeshError("faces: owner and neighbour count elements up to " + std::to_string(n_elements - 1) + ", and " +
                     std::to_string(faces.size()) + " faces bound far fewer; number them from 0 without gaps");
   std::vector<std::vector<std::pair<Index, bool>>> of(static_cast<std::size_t>(n_elements));
   for (Index f = 0; f < faces.size(); ++f) {
-    if (auto const o = list(owner)[std::size_t(f)]; o >= 0) of[std::size_t(o)].emplace_back(f, true);
-    if (auto const n = list(neighbour)[std::size_t(f)]; n >= 0) of[std::size_t(n)].emplace_back(f, false);
+    if (auto const o = list(owner)[f]; o >= 0) of[o].emplace_back(f, true);
+    if (auto const n = list(neighbour)[f]; n >= 0) of[n].emplace_back(f, false);
   }
   io::ElementsByFaces elements(mesh);
   for (std::size_t e = 0; e < of.size(); ++e) {

@@ -62,7 +62,7 @@ Coordinates coordinates_from(Mesh const& mesh, Vectors const& v) {
   check_vectors(v, mesh.n_nodes(), "coordinates");
   auto const values = as_vectors(v, "coordinates");
   Coordinates out(mesh.n_nodes());
-  for (Index n = 0; n < out.size(); ++n) out.set(n, values[std::size_t(n)]);
+  for (Index n = 0; n < out.size(); ++n) out.set(n, values[n]);
   return out;
 }
 
@@ -142,7 +142,7 @@ nb::tuple zone_coordinates(PyMesh const& self, int number) {
   if (number < 0 || number >= int(mesh.zones.size()))
     throw nb::index_error(
         ("zone " + std::to_string(number) + ": the mesh has " + std::to_string(mesh.zones.size())).c_str());
-  Zone const& zone = mesh.zones[std::size_t(number)];
+  Zone const& zone = mesh.zones[number];
   auto const one = [&](int c) -> nb::object {
     double* const data = component(mesh, c).data() + zone.first_node;
     if (!zone.is_block()) return nb::cast(View1(data, {std::size_t(zone.size())}, owner_of(self)));
@@ -171,14 +171,14 @@ nb::list patches(PyMesh const& self) {
 /// Corner nodes of the faces of a patch.
 template <class Use>
 void each_face(Mesh const& mesh, Patch const& patch, Use const& use) {
-  if (!mesh.zones[std::size_t(patch.zone)].is_block() || patch.faces.size() > 0) {
+  if (!mesh.zones[patch.zone].is_block() || patch.faces.size() > 0) {
     for (Index f = 0; f < patch.faces.size(); ++f) {
       auto const face = patch.faces[f];
       use(std::vector<std::int64_t>(face.begin(), face.end()));
     }
     return;
   }
-  Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+  Zone const& zone = mesh.zones[patch.zone];
   int normal = 0;
   while (normal < 2 && patch.range.end[normal] - patch.range.begin[normal] != 1) ++normal;
   int const a = (normal + 1) % 3, b = (normal + 2) % 3;
@@ -198,10 +198,10 @@ void each_face(Mesh const& mesh, Patch const& patch, Use const& use) {
 std::vector<std::int64_t> nodes_of(Mesh const& mesh, Strings const& selectors) {
   std::set<std::int64_t> found;
   for (int const p : select_patches(mesh, selectors)) {
-    Patch const& patch = mesh.patches[std::size_t(p)];
+    Patch const& patch = mesh.patches[p];
     found.insert(patch.nodes.begin(), patch.nodes.end());
     if (patch.faces.size() == 0 && patch.nodes.empty()) {  // blocks: of faces collapsed to lines too
-      Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+      Zone const& zone = mesh.zones[patch.zone];
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) found.insert(zone.node({i, j, k}));
@@ -214,7 +214,7 @@ std::vector<std::int64_t> nodes_of(Mesh const& mesh, Strings const& selectors) {
 nb::tuple facets(PyMesh const& self, Strings const& selectors) {
   std::vector<std::int64_t> offsets{0}, nodes;
   for (int const p : select_patches(*self.mesh, selectors))
-    each_face(*self.mesh, self.mesh->patches[std::size_t(p)], [&](std::vector<std::int64_t> const& face) {
+    each_face(*self.mesh, self.mesh->patches[p], [&](std::vector<std::int64_t> const& face) {
       nodes.insert(nodes.end(), face.begin(), face.end());
       offsets.push_back(std::int64_t(nodes.size()));
     });
@@ -227,7 +227,7 @@ QualityReport measured(Mesh const& mesh, std::optional<Coordinates> const& moved
   Kokkos::DefaultHostExecutionSpace const exec;
   std::vector<int> walls;
   for (int p = 0; p < int(mesh.patches.size()); ++p)
-    if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.push_back(p);
+    if (mesh.patches[p].kind == PatchKind::wall) walls.push_back(p);
   QualityReport report;
   auto const measure = [&](auto input, auto const& of) {
     input.coordinates = views(moved ? *moved : mesh.coordinates);

@@ -84,7 +84,7 @@ void add_rigid(PyMotion& self, Strings patches, std::vector<double> const& matri
                       " and " + std::to_string(translation.size()));
   RigidRule rule;
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) rule.matrix.m[r][c] = matrix[std::size_t(3 * r + c)];
+    for (int c = 0; c < 3; ++c) rule.matrix.m[r][c] = matrix[3 * r + c];
   rule.translation = {translation[0], translation[1], translation[2]};
   add(self, std::move(patches), rule, rank, "rigid rule");
 }

@@ -53,7 +53,7 @@ class PyPlan {
     std::vector<std::int64_t> row, node, patch;
     std::vector<double> rotation;
     for (BoundaryPlace const& place : found) {
-      Zone const& zone = mesh_->zones[std::size_t(place.zone)];
+      Zone const& zone = mesh_->zones[place.zone];
       row.push_back(place.boundary_node);
       node.push_back(zone.is_block() ? zone.node(place.index) : zone.first_node + place.index[0]);
       patch.push_back(place.patch);
@@ -126,17 +126,16 @@ class PyPlan {
     auto const each = [&](auto const& use) {
       for (BoundaryPlace const& place : places)
         if (place.patch >= 0 && std::size_t(place.patch) < resolved.patch.size() &&
-            resolved.patch[std::size_t(place.patch)].rule >= 0)
-          use(place, resolved.patch[std::size_t(place.patch)]);
+            resolved.patch[place.patch].rule >= 0)
+          use(place, resolved.patch[place.patch]);
     };
     each([&](BoundaryPlace const& place, Resolution const& own) {
-      if (std::holds_alternative<PrescribedRule>(resolved.rules[std::size_t(own.rule)].rule))
-        prescribed[std::size_t(place.boundary_node)] = 1;
+      if (std::holds_alternative<PrescribedRule>(resolved.rules[own.rule].rule)) prescribed[place.boundary_node] = 1;
     });
     std::set<std::string> names;
     each([&](BoundaryPlace const& place, Resolution const& own) {
-      Patch const& patch = mesh_->patches[std::size_t(place.patch)];
-      if (own.by_default && prescribed[std::size_t(place.boundary_node)] != 0)
+      Patch const& patch = mesh_->patches[place.patch];
+      if (own.by_default && prescribed[place.boundary_node] != 0)
         names.insert(patch.families.empty() ? patch.name : patch.families.front());
     });
     if (names.empty()) return;

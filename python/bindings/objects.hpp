@@ -34,7 +34,7 @@ using Vectors = nb::ndarray<nb::ndim<2>, nb::device::cpu>;
 
 /// A new (n, 3) array of doubles, its memory Python's.
 inline nb::ndarray<nb::numpy, double, nb::ndim<2>> new_vectors(Index n) {
-  auto* const data = new double[std::size_t(3 * n)];
+  auto* const data = new double[3 * n];
   nb::capsule const owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
   return nb::ndarray<nb::numpy, double, nb::ndim<2>>(data, {std::size_t(n), 3}, owner);
 }

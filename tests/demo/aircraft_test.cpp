@@ -83,8 +83,8 @@ TEST_P(Aircraft, EveryFaceIsJoinedOnceOrHasOnePatchAndJointsCoincideBitForBit) {
   Index joined = 0;
   for (Interface1to1 const& face : mesh.interfaces)
     for_each_node(face.range, [&](Index3 const& p) {
-      Vec3 const own = mesh.coordinates[mesh.zones[std::size_t(face.zone)].node(p)];
-      Vec3 const other = mesh.coordinates[mesh.zones[std::size_t(face.donor_zone)].node(face.to_donor(p))];
+      Vec3 const own = mesh.coordinates[mesh.zones[face.zone].node(p)];
+      Vec3 const other = mesh.coordinates[mesh.zones[face.donor_zone].node(face.to_donor(p))];
       ASSERT_TRUE(own == other) << face.name;
       ++joined;
     });
@@ -96,7 +96,7 @@ TEST_P(Aircraft, HasItsFamiliesWithSymmetryOnThePlaneAndFarFieldFarAway) {
   for (Patch const& patch : mesh.patches) {
     ASSERT_EQ(patch.families.size(), 1u);
     families.insert(patch.families[0]);
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     for_each_node(patch.range, [&](Index3 const& p) {
       Vec3 const x = mesh.coordinates[zone.node(p)];
       if (patch.kind == PatchKind::symmetry) {
@@ -117,7 +117,7 @@ TEST_P(Aircraft, HasItsFamiliesWithSymmetryOnThePlaneAndFarFieldFarAway) {
 TEST_P(Aircraft, FirstCellsAreAsLongAsAskedForAlongTheirLines) {
   for (Patch const& patch : mesh.patches) {
     if (patch.kind != PatchKind::wall) continue;
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     int const normal = normal_of(patch.range), inwards = patch.range.begin[normal] == 0 ? 1 : -1;
     for_each_node(patch.range, [&](Index3 const& p) {
       Index3 next = p;
@@ -132,7 +132,7 @@ TEST_P(Aircraft, BodiesAreRoundAndTheAileronHangsAtItsHingeLine) {
   double radius = 0, lowest = 1e9;
   int on_hinge = 0;
   for (Patch const& patch : mesh.patches) {
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     for_each_node(patch.range, [&](Index3 const& p) {
       Vec3 const x = mesh.coordinates[zone.node(p)];
       if (patch.families[0] == "fuselage" && x.x > 5 && x.x < 24) {

@@ -177,19 +177,19 @@ TEST(BallMesh, ShiftsNodesOfTetrahedraAlone) {
   options.jitter = 0;
   Mesh const plain = make_ball(options);
   ASSERT_TRUE(same_lists(shifted.elements.nodes, plain.elements.nodes));
-  std::vector<char> held(std::size_t(plain.n_nodes()), 0);
+  std::vector<char> held(plain.n_nodes(), 0);
   for (Index e = 0; e < plain.n_elements(); ++e)
-    if (plain.elements.type[std::size_t(e)] != ElementType::tetrahedron)
-      for (Index32 const n : plain.elements.nodes[e]) held[std::size_t(n)] = 1;
+    if (plain.elements.type[e] != ElementType::tetrahedron)
+      for (Index32 const n : plain.elements.nodes[e]) held[n] = 1;
   for (auto const& p : plain.patches)
-    for (Index32 const n : p.faces.item) held[std::size_t(n)] = 1;
+    for (Index32 const n : p.faces.item) held[n] = 1;
   Index moved = 0, free = 0;
   for (Index n = 0; n < plain.n_nodes(); ++n) {
     bool const same = plain.coordinates[n] == shifted.coordinates[n];
-    if (held[std::size_t(n)] != 0) {
+    if (held[n] != 0) {
       ASSERT_TRUE(same) << n;
     }
-    free += held[std::size_t(n)] == 0 ? 1 : 0;
+    free += held[n] == 0 ? 1 : 0;
     moved += same ? 0 : 1;
   }
   EXPECT_GT(moved, free * 9 / 10);

@@ -124,7 +124,7 @@ void for_nodes(Mesh const& mesh, std::vector<std::string> const& family, Each co
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
-          each(int(p), mesh.zones[std::size_t(patch.zone)].node({i, j, k}));
+          each(int(p), mesh.zones[patch.zone].node({i, j, k}));
   }
 }
 

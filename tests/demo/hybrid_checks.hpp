@@ -68,7 +68,7 @@ struct Soundness {
 inline Soundness soundness(Mesh const& mesh) {
   Soundness x;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    auto const m = element_measures(mesh.elements.type[std::size_t(e)], corners(mesh, e), 1, {0, 0, 1});
+    auto const m = element_measures(mesh.elements.type[e], corners(mesh, e), 1, {0, 0, 1});
     x.smallest_volume = std::min(x.smallest_volume, m.volume);
     x.smallest_determinant = std::min(x.smallest_determinant, m.determinant_2x2x2);
     x.largest_aspect_ratio = std::max(x.largest_aspect_ratio, m.aspect_ratio);

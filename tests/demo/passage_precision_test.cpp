@@ -43,7 +43,7 @@ double off_end_walls(Outcome const& run) {
   for (Patch const& patch : run.mesh.patches) {
     auto const& family = patch.families.front();
     if (family != "hub" && family != "case") continue;
-    Zone const& zone = run.mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = run.mesh.zones[patch.zone];
     IndexRange const& r = patch.range;
     for (int k = r.begin[2]; k < r.end[2]; ++k)
       for (int j = r.begin[1]; j < r.end[1]; ++j)

@@ -107,7 +107,7 @@ class Passage {
       bool const hub = patch.families == std::vector<std::string>{"hub"},
                  casing = patch.families == std::vector<std::string>{"case"};
       if (!hub && !casing) continue;
-      Zone const& zone = mesh_.zones[std::size_t(patch.zone)];
+      Zone const& zone = mesh_.zones[patch.zone];
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
@@ -161,7 +161,7 @@ class Passage {
     auto const keep = [](double& largest, double value) { largest = std::max(largest, std::abs(value)); };
     for (Patch const& patch : mesh_.patches) {
       if (patch.name != "blade") continue;
-      Zone const& zone = mesh_.zones[std::size_t(patch.zone)];
+      Zone const& zone = mesh_.zones[patch.zone];
       int const k = patch.range.begin[2], last = zone.extent[1] - 1;
       for (int j = 0; j <= last; ++j)
         for (int i = std::max(1, patch.range.begin[0]); i < std::min(patch.range.end[0], zone.extent[0] - 1); ++i) {

@@ -76,7 +76,7 @@ Shares shares_over_tips(Outcome const& out) {
   Shares s;
   for (Patch const& patch : out.mesh.patches) {
     if (patch.families.front() != "tip") continue;
-    Zone const& zone = out.mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = out.mesh.zones[patch.zone];
     int const step = patch.range.begin[1] == 0 ? 1 : -1;
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
@@ -124,7 +124,7 @@ void expect_nodes_on_hub_and_case(Outcome const& out) {
     for (int k = r.begin[2]; k < r.end[2]; ++k)
       for (int j = r.begin[1]; j < r.end[1]; ++j)
         for (int i = r.begin[0]; i < r.end[0]; ++i) {
-          Index const n = out.mesh.zones[std::size_t(patch.zone)].node({i, j, k});
+          Index const n = out.mesh.zones[patch.zone].node({i, j, k});
           ASSERT_NEAR(off(out.morphed.position[n]), off(out.mesh.coordinates[n]), 1e-10 * size) << patch.name;
         }
   }
@@ -135,7 +135,7 @@ double first_height_change(Outcome const& out) {
   double worst = 0;
   for (Patch const& patch : out.mesh.patches) {
     if (patch.families.front() != "blade") continue;
-    Zone const& zone = out.mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = out.mesh.zones[patch.zone];
     IndexRange const& r = patch.range;
     for (int j = r.begin[1]; j < r.end[1]; ++j)
       for (int i = r.begin[0]; i < r.end[0]; ++i) {
@@ -209,7 +209,7 @@ TEST_P(TipGaps, SidesFollowTheBladeToItsTipAndShareTheGapAbove) {
     for (int k = r.begin[2]; k < r.end[2]; ++k)
       for (int j = r.begin[1]; j < r.end[1]; ++j)
         for (int i = r.begin[0]; i < r.end[0]; ++i) {
-          Index const n = out.mesh.zones[std::size_t(side.zone)].node({i, j, k});
+          Index const n = out.mesh.zones[side.zone].node({i, j, k});
           Vec3 const p = out.mesh.coordinates[n];
           if (std::abs(p.x) > 0.03) continue;
           double const h = span(p), tip = 1 - gap;
@@ -255,7 +255,7 @@ TEST_P(TipGaps, AreTheSameHoweverTheMeshIsStored) {
     Outcome const other = morph(std::move(scrambled.mesh), motion_of(options, change), near_field_of_the_blade());
     double worst = 0;
     for (Index n = 0; n < other.mesh.n_nodes(); ++n)
-      worst = std::max(worst, distance(other.u(n), plain.u(scrambled.old_node[std::size_t(n)])));
+      worst = std::max(worst, distance(other.u(n), plain.u(scrambled.old_node[n])));
     EXPECT_LE(worst, 1e-12 * plain.plan().mesh_size) << seed;
   }
 }

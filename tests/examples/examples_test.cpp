@@ -430,12 +430,8 @@ TEST_F(Example, WingGoesWithItsLatticeOfControlPoints) {
     return d;
   };
   // Cubic B-splines of 5 and 6 points: one knot between, and two.
-  auto const along_chord = [](int n, double s) {
-    return test::plain_splines(test::plain_knots(5, 3), 3, s)[std::size_t(n)];
-  };
-  auto const along_span = [](int n, double w) {
-    return test::plain_splines(test::plain_knots(6, 3), 3, w)[std::size_t(n)];
-  };
+  auto const along_chord = [](int n, double s) { return test::plain_splines(test::plain_knots(5, 3), 3, s)[n]; };
+  auto const along_span = [](int n, double w) { return test::plain_splines(test::plain_knots(6, 3), 3, w)[n]; };
   auto const solve = [](auto const& rising, double value) {
     double low = 0, high = 1;
     for (int n = 0; n < 60; ++n) (rising(0.5 * (low + high)) < value ? low : high) = 0.5 * (low + high);

@@ -235,7 +235,7 @@ Mesh tetrahedra_of(Mesh const& mesh) {
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const c = mesh.elements.corners(e);
     for (auto const& [a, b] : path) {
-      std::array<Index32, 4> const nodes{c[0], c[std::size_t(a)], c[std::size_t(b)], c[6]};
+      std::array<Index32, 4> const nodes{c[0], c[a], c[b], c[6]};
       out.elements.type.push_back(ElementType::tetrahedron);
       out.elements.nodes.add(nodes);
     }
@@ -247,7 +247,7 @@ Mesh tetrahedra_of(Mesh const& mesh) {
     for (Index f = 0; f < patch.faces.size(); ++f) {
       auto const face = patch.faces[f];
       Index32 const side = find_boundary_face(topology, face);
-      auto const c = mesh.elements.corners(topology.boundary.element[std::size_t(side)]);
+      auto const c = mesh.elements.corners(topology.boundary.element[side]);
       std::size_t const from = std::size_t(
           std::find_if(face.begin(), face.end(), [&](Index32 n) { return n == c[0] || n == c[6]; }) - face.begin());
       auto const at = [&](std::size_t k) { return face[(from + k) % 4]; };
@@ -349,13 +349,13 @@ TEST_F(FilledElements, HubAndCaseOfAPassageAreFilledInEitherLayout) {
 Mesh renumbered(Mesh const& mesh) {
   Mesh out = mesh;
   out.coordinates = Coordinates(mesh.n_nodes());
-  std::vector<Index32> number(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> number(mesh.n_nodes());
   for (Zone const& zone : mesh.zones)
     for (Index n = 0; n < zone.size(); ++n)
-      number[std::size_t(zone.first_node + n)] = Index32(zone.first_node + (n * 7919) % zone.size());
-  for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(number[std::size_t(n)], mesh.coordinates[n]);
+      number[zone.first_node + n] = Index32(zone.first_node + (n * 7919) % zone.size());
+  for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(number[n], mesh.coordinates[n]);
   auto const renumber = [&](auto& list) {
-    for (Index32& n : list) n = number[std::size_t(n)];
+    for (Index32& n : list) n = number[n];
   };
   renumber(out.elements.nodes.item);
   for (Patch& patch : out.patches) renumber(patch.faces.item);

@@ -60,7 +60,7 @@ std::vector<Vec3> nodes_of(Mesh const& mesh, std::string const& family) {
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
-          out.push_back(mesh.coordinates[mesh.zones[std::size_t(patch.zone)].node({i, j, k})]);
+          out.push_back(mesh.coordinates[mesh.zones[patch.zone].node({i, j, k})]);
   }
   return out;
 }
@@ -79,11 +79,11 @@ double volume_of(Mesh const& mesh) {
               Vec3 middle;
               for (int n = 0; n < 4; ++n) {
                 Index3 p{i, j, k};
-                p[std::size_t(axis)] += side;
-                p[std::size_t((axis + 1) % 3)] += n == 1 || n == 2 ? 1 : 0;
-                p[std::size_t((axis + 2) % 3)] += n >= 2 ? 1 : 0;
-                face[std::size_t(n)] = mesh.coordinates[zone.node(p)];
-                middle += 0.25 * face[std::size_t(n)];
+                p[axis] += side;
+                p[(axis + 1) % 3] += n == 1 || n == 2 ? 1 : 0;
+                p[(axis + 2) % 3] += n >= 2 ? 1 : 0;
+                face[n] = mesh.coordinates[zone.node(p)];
+                middle += 0.25 * face[n];
               }
               for (std::size_t n = 0; n < 4; ++n)
                 cell += (side == 0 ? -1 : 1) * dot(middle, cross(face[n], face[(n + 1) % 4])) / 6;
@@ -183,7 +183,7 @@ TEST_P(Wedges, ArcsHaveAFamilyOfTheirOwnThatIsTheBladesToo) {
     if (patch.families.front() != "blade") continue;
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j) {
-        Vec3 const p = made.coordinates[made.zones[std::size_t(patch.zone)].node({patch.range.begin[0], j, k})];
+        Vec3 const p = made.coordinates[made.zones[patch.zone].node({patch.range.begin[0], j, k})];
         EXPECT_LT(std::abs(p.y * std::cos(angle) - p.x * std::sin(angle)), 1e-9);
         EXPECT_GE(std::hypot(p.x, p.y), contact - 1e-9);
       }
@@ -226,10 +226,10 @@ TEST(Fillet, CellsFarAwayStayBitForBit) {
   int same = 0;
   for (std::size_t z = 0; z < result.split.zones.size(); ++z) {
     SplitZone const& part = result.split.zones[z];
-    Zone const &zone = result.split.mesh.zones[z], &old = mesh.zones[std::size_t(part.zone)];
+    Zone const &zone = result.split.mesh.zones[z], &old = mesh.zones[part.zone];
     for (Index n = 0; n < zone.size(); ++n) {
       Index3 p = zone.index(zone.first_node + n);
-      for (int axis = 0; axis < 3; ++axis) p[std::size_t(axis)] += part.box.begin[std::size_t(axis)];
+      for (int axis = 0; axis < 3; ++axis) p[axis] += part.box.begin[axis];
       Vec3 const was = mesh.coordinates[old.node(p)], is = result.split.mesh.coordinates[zone.first_node + n];
       if (part.sheet < 0 || std::max(p[1], p[2]) > 23) {
         EXPECT_EQ(was, is);

@@ -86,7 +86,7 @@ std::vector<std::array<Vec3, 3>> arcs_of(Mesh const& mesh) {
   std::vector<std::array<Vec3, 3>> out;
   for (Patch const& patch : mesh.patches) {
     if (patch.families.front() != "blade_fillet") continue;
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     // Fewer faces lie across the arc than along it.
     std::size_t most = 0;
     for (std::size_t a = 1; a < 3; ++a)
@@ -149,7 +149,7 @@ TEST_P(FilletedBlades, OfBlocksKeepArcsAndHubWithARuleForTheBladeAlone) {
   for (Index n = 0; n < mesh().n_nodes(); ++n) after[key(mesh().coordinates[n])] = morphed.position[n];
   for (Patch const& patch : mesh().patches) {
     if (patch.families.front() != "hub") continue;
-    Zone const& zone = mesh().zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh().zones[patch.zone];
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)

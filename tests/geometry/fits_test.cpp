@@ -56,7 +56,7 @@ TEST(SymmetricEigen, ValuesAreTheRootsOfTheCharacteristicPolynomial) {
   for (int n = 0; n < 200; ++n) {
     auto const a = random_symmetric<3>(random);
     double const m = (a[0][0] + a[1][1] + a[2][2]) / 3;
-    auto const at = [&](int r, int c) { return a[std::size_t(r)][std::size_t(c)] - (r == c ? m : 0); };
+    auto const at = [&](int r, int c) { return a[r][c] - (r == c ? m : 0); };
     double const q = 0.5 * (at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)) -
                             at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
                             at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0)));
@@ -66,7 +66,7 @@ TEST(SymmetricEigen, ValuesAreTheRootsOfTheCharacteristicPolynomial) {
     double const angle = std::acos(std::clamp(q / std::pow(p, 1.5), -1.0, 1.0)) / 3;
     auto const eigen = symmetric_eigen<3>(a);
     for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(eigen.value[std::size_t(k)],
+      EXPECT_NEAR(eigen.value[k],
                   m + 2 * std::sqrt(p) *
                           std::cos(angle + (k == 0   ? 0
                                             : k == 1 ? 4

@@ -69,17 +69,15 @@ TEST(DisjointSets, HangTogetherAsFarAsAFloodReaches) {
   DisjointSets<int> sets(size);
   for (auto const& [a, b] : pairs) sets.join(a, b);
   std::vector<int> smallest(size);
-  for (int n = 0; n < size; ++n) smallest[std::size_t(n)] = n;
+  for (int n = 0; n < size; ++n) smallest[n] = n;
   for (int round = 0; round < size; ++round)
-    for (auto const& [a, b] : pairs)
-      smallest[std::size_t(a)] = smallest[std::size_t(b)] =
-          std::min(smallest[std::size_t(a)], smallest[std::size_t(b)]);
+    for (auto const& [a, b] : pairs) smallest[a] = smallest[b] = std::min(smallest[a], smallest[b]);
   EXPECT_EQ(sets.roots(), smallest);
   int count = 0;
   auto const number = sets.set_numbers();
   for (int n = 0; n < size; ++n) {
-    int const expected = smallest[std::size_t(n)] == n ? count++ : number[std::size_t(smallest[std::size_t(n)])];
-    EXPECT_EQ(number[std::size_t(n)], expected);
+    int const expected = smallest[n] == n ? count++ : number[smallest[n]];
+    EXPECT_EQ(number[n], expected);
   }
 }
 
@@ -95,7 +93,7 @@ TEST(PieceAt, IsTheOneThatHoldsThePlace) {
   std::vector<double> const x{-1, 0, 0.5, 2};
   auto const at = [&](double v) {
     return piece_at(
-        int(x.size()), [&](int k) { return x[std::size_t(k)]; }, v);
+        int(x.size()), [&](int k) { return x[k]; }, v);
   };
   EXPECT_EQ(at(-5), 0);
   EXPECT_EQ(at(-0.5), 0);

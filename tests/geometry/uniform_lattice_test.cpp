@@ -59,7 +59,7 @@ TEST(UniformLattice, HasItsValuesOnItsNodesAndConstantsBitForBit) {
     auto const value = on_nodes(lattice, trilinear);
     auto const constant = on_nodes(lattice, [](Vec3 const&) { return Vec3{0.1, -1. / 3, 7e5}; });
     for (std::int64_t n = 0; n < lattice.size(); ++n) {
-      EXPECT_LT(distance(lattice.at(value.data(), lattice.position(n)), value[std::size_t(n)]), 2e-14);
+      EXPECT_LT(distance(lattice.at(value.data(), lattice.position(n)), value[n]), 2e-14);
       EXPECT_EQ(lattice.at(constant.data(), lattice.position(n) + random.vector(1)), constant.front());
     }
   }

@@ -20,7 +20,7 @@ struct Example {
   int moves = 0;
 
   static void edges(std::array<Vec3, 4> const& x, Vec3 (&edge)[3]) {
-    for (int d = 0; d < 3; ++d) edge[d] = x[std::size_t(d) + 1] - x[0];
+    for (int d = 0; d < 3; ++d) edge[d] = x[d + 1] - x[0];
   }
   [[nodiscard]] BaselineCorner baseline() const {
     Vec3 edge[3];
@@ -29,7 +29,7 @@ struct Example {
   }
   [[nodiscard]] CornerChange change(Vec3 const& move = {}) const {
     auto x = now;
-    x[std::size_t(moves)] += move;
+    x[moves] += move;
     Vec3 edge[3];
     edges(x, edge);
     double share[3];
@@ -52,8 +52,8 @@ std::vector<Example> examples() {
     for (int c = 0; c < 4; ++c) {
       Vec3 const unit{c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0, c == 3 ? 1.0 : 0.0};
       Vec3 const b = unit + 0.2 * vector(), m = b + 0.25 * vector();
-      e.before[std::size_t(c)] = from + Vec3{b.x, stretch.y * b.y, b.z};
-      e.now[std::size_t(c)] = from + Vec3{m.x, stretch.y * m.y, m.z};
+      e.before[c] = from + Vec3{b.x, stretch.y * b.y, b.z};
+      e.now[c] = from + Vec3{m.x, stretch.y * m.y, m.z};
     }
     e.moves = n % 4;
     out.push_back(e);

@@ -152,13 +152,13 @@ TEST_P(ShapeSmoothing, KeepsWhatItMust) {
     for (int k = box.cells.begin[2]; k <= box.cells.end[2]; ++k)
       for (int j = box.cells.begin[1]; j <= box.cells.end[1]; ++j)
         for (int i = box.cells.begin[0]; i <= box.cells.end[0]; ++i) {
-          Index const n = mesh.zones[std::size_t(box.zone)].node({i, j, k});
+          Index const n = mesh.zones[box.zone].node({i, j, k});
           ASSERT_TRUE(same_bits(x[n], plain[n])) << n;
         }
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     SlipSurface const* const surface = run.prepared().surface.slip_surface(int(p));
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {

@@ -114,7 +114,7 @@ TEST_P(FrozenGuard, KeepsPeriodicPairsSlipSurfacesAndWhatStays) {
       SlipSurface const* const surface = run.prepared.surface.slip_surface(int(p));
       if (surface == nullptr) continue;
       IndexRange const& r = mesh.patches[p].range;
-      Zone const& zone = mesh.zones[std::size_t(mesh.patches[p].zone)];
+      Zone const& zone = mesh.zones[mesh.patches[p].zone];
       for (int k = r.begin[2]; k < r.end[2]; ++k)
         for (int j = r.begin[1]; j < r.end[1]; ++j)
           for (int i = r.begin[0]; i < r.end[0]; ++i) {

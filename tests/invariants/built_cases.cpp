@@ -60,7 +60,7 @@ InnerRegion region(Mesh const& mesh, std::vector<std::pair<int, IndexRange>> con
         for (int i = range.begin[0]; i + 1 < range.end[0]; ++i) {
           Vec3 sum;
           for (int c = 0; c < 8; ++c)
-            sum += mesh.coordinates[mesh.zones[std::size_t(z)].node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})];
+            sum += mesh.coordinates[mesh.zones[z].node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})];
           centres.push_back(0.125 * sum);
         }
   InnerRegion out;

@@ -45,7 +45,7 @@ TEST(CommonMotionOfRealBlocks, IsThatOfAPlaneAirfoil) {
   if (file.empty()) GTEST_SKIP() << "no stand-in was made";
   Mesh mesh = read_mesh(file);
   // BC names repeat, and the zone tells them apart.
-  for (Patch& p : mesh.patches) p.families = {mesh.zones[std::size_t(p.zone)].name + "/" + p.name};
+  for (Patch& p : mesh.patches) p.families = {mesh.zones[p.zone].name + "/" + p.name};
   RigidTransform const r = turn({0.3, 0, 0.1}, {0, 1, 0}, 90);
   Map const map = [&](Vec3 const& p) { return r(Vec3{3 * p.x, p.y, 3 * p.z}); };
   // All but the planes, on which nodes slide.

@@ -58,7 +58,7 @@ inline double smallest_determinant(Mesh const& mesh, Coordinates const& x) {
   Kokkos::DefaultHostExecutionSpace const exec;
   std::vector<CellBox> all;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
-    Index3 const n = mesh.zones[std::size_t(z)].extent;
+    Index3 const n = mesh.zones[z].extent;
     all.push_back({z, {{0, 0, 0}, {n[0] - 1, n[1] - 1, n[2] - 1}}});
   }
   auto const baseline = views(mesh.coordinates);

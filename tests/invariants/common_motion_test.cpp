@@ -154,7 +154,7 @@ Mesh with_a_box(Mesh const& mesh) {
   int const z = out.add_zone("apart", one.zones.front().extent);
   Coordinates const before = out.coordinates;
   out.coordinates = Coordinates(out.n_nodes());
-  Index const first = out.zones[std::size_t(z)].first_node;
+  Index const first = out.zones[z].first_node;
   for (Index n = 0; n < first; ++n) out.coordinates.set(n, before[n]);
   for (Index n = 0; n < one.n_nodes(); ++n) out.coordinates.set(first + n, one.coordinates[n] + Vec3{0.1, 0.2, 0.3});
   for (Patch patch : one.patches) {
@@ -234,7 +234,7 @@ TEST(CommonMotionOfParts, HasRatesThatAreItsSlope) {
     double const h = 1e-5;
     auto const ahead = given(h), behind = given(-h);
     Coordinates rate(Index(ahead.size()));
-    for (Index k = 0; k < rate.size(); ++k) rate.set(k, (0.5 / h) * (ahead[std::size_t(k)] - behind[std::size_t(k)]));
+    for (Index k = 0; k < rate.size(); ++k) rate.set(k, (0.5 / h) * (ahead[k] - behind[k]));
     LinearisedMorph<Exec> const at(prepared.plan(), mesh.coordinates, given(0));
     Coordinates const v = at.forwards(rate), up = displacements(h), down = displacements(-h);
     double worst = 0, largest = 0;

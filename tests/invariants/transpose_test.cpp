@@ -82,7 +82,7 @@ TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo
   double const size = prepared.plan().mesh_size;
   Coordinates rate(at.boundary.size());
   for (Index k = 0; k < rate.size(); ++k) {
-    Vec3 const x = (1 / size) * prepared.mesh.coordinates[prepared.plan().boundary_nodes[std::size_t(k)]];
+    Vec3 const x = (1 / size) * prepared.mesh.coordinates[prepared.plan().boundary_nodes[k]];
     rate.set(k, {std::sin(3 * x.y + x.z), std::cos(2 * x.z - x.x), std::sin(1 + 2 * x.x + 3 * x.y)});
   }
   auto const displacements = [&](double step) {
@@ -93,7 +93,7 @@ TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo
     return u;
   };
   Coordinates const v = at.forwards(rate);
-  std::vector<double> off(std::size_t(v.size()), std::numeric_limits<double>::infinity());
+  std::vector<double> off(v.size(), std::numeric_limits<double>::infinity());
   // A long step goes over bends of facets, which are small beside some meshes; a short one is within what given nodes
   // may be off a surface that scatters.
   for (double const h : {1e-6 * size, 1e-8 * size}) {
@@ -102,7 +102,7 @@ TEST_P(Transpose, FollowsADerivativeThatIsTheSlopeInDirectionsOffSlipSurfacesToo
       // Where facets meet at a small angle the slopes on the two sides differ; each is a rate.
       Vec3 const forward = (1 / h) * (ahead[n] - here[n]), backward = (1 / h) * (here[n] - behind[n]);
       for (Vec3 const& slope : {0.5 * (forward + backward), forward, backward})
-        off[std::size_t(n)] = std::min(off[std::size_t(n)], distance(slope, v[n]));
+        off[n] = std::min(off[n], distance(slope, v[n]));
     }
   }
   double const worst = *std::max_element(off.begin(), off.end());

@@ -330,7 +330,7 @@ class Cut {
     for (auto& [number, own] : node) {
       own = std::int64_t(out.points.size());
       out.points.push_back(number);
-      out.lists.points.push_back(all_.points[std::size_t(number)]);
+      out.lists.points.push_back(all_.points[number]);
     }
     for (auto& face : out.lists.faces)
       for (std::int64_t& n : face) n = node.at(n);
@@ -359,7 +359,7 @@ double volume(Mesh const& mesh) {
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const c = mesh.elements.corners(e);
     EXPECT_EQ(c.size(), 8U);
-    auto const x = [&](int k) { return mesh.coordinates[c[std::size_t(k)]]; };
+    auto const x = [&](int k) { return mesh.coordinates[c[k]]; };
     for (auto const& t : {std::array{0, 1, 2, 6}, std::array{0, 2, 3, 6}, std::array{0, 3, 7, 6},
                           std::array{0, 7, 4, 6}, std::array{0, 4, 5, 6}, std::array{0, 5, 1, 6}})
       sum += dot(cross(x(t[1]) - x(t[0]), x(t[2]) - x(t[0])), x(t[3]) - x(t[0])) / 6;
@@ -659,7 +659,7 @@ TEST(OpenFoam, ZonesOfCellsAndFacesAreSubsets) {
     reorder(ordered, order_by_position(mesh));
     for (std::size_t k = 0; k < 3; ++k) {
       Index const e = ordered.subsets[0].elements[k];
-      EXPECT_TRUE(std::ranges::count(mesh.subsets[0].elements, ordered.file_order.element[std::size_t(e)]) == 1);
+      EXPECT_TRUE(std::ranges::count(mesh.subsets[0].elements, ordered.file_order.element[e]) == 1);
     }
     Coordinates moved(mesh.n_nodes());
     for (Index n = 0; n < moved.size(); ++n) moved.set(n, mesh.coordinates[n] + Vec3{0.5, 0, 0});
@@ -701,8 +701,8 @@ TEST(OpenFoam, AMeshOneCellThickIsAPlaneMeshAndBothPlanesMoveAlike) {
     Coordinates moved(mesh.n_nodes());
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       std::array<double, 3> by{0.01, 0.01, 0.01};
-      by[std::size_t(u)] = 0.1 / double(n + 3);
-      by[std::size_t(axis)] = 0;
+      by[u] = 0.1 / double(n + 3);
+      by[axis] = 0;
       moved.set(n, mesh.coordinates[n] + Vec3{by[0], by[1], by[2]});
     }
     write_morphed((folder / "case").string(), (folder / "out").string(), mesh, moved);
@@ -741,7 +741,7 @@ FoamLists collapsed(FoamBox const& box) {
   for (std::int64_t n = 0; n < std::int64_t(all.points.size()); ++n)
     if (kept(n) == n) {
       number[n] = std::int64_t(out.points.size());
-      out.points.push_back(all.points[std::size_t(n)]);
+      out.points.push_back(all.points[n]);
     }
   out.neighbour = all.neighbour;
   out.patches = all.patches;
@@ -888,7 +888,7 @@ TEST(OpenFoam, DecomposedMeshesAreReadAsOneAndWrittenAsTheyLie) {
         auto const points = points_of(folder / "out" / place / "points");
         ASSERT_EQ(points.size(), cut.parts[p].points.size());
         for (std::size_t n = 0; n < points.size(); ++n)
-          EXPECT_EQ(points[n], moved_by(lists.points[std::size_t(cut.parts[p].points[n])])) << n;
+          EXPECT_EQ(points[n], moved_by(lists.points[cut.parts[p].points[n]])) << n;
       }
       SeriesWriter series(path, (folder / "times").string(), mesh, {0.25});
       series.add(moved);
@@ -919,7 +919,7 @@ TEST(OpenFoam, PlaneMeshesMayBeDecomposed) {
         points_of(folder / "out" / ("processor" + std::to_string(p)) / "constant" / "polyMesh" / "points");
     ASSERT_EQ(points.size(), cut.parts[p].points.size());
     for (std::size_t n = 0; n < points.size(); ++n)
-      EXPECT_EQ(points[n], moved_by(lists.points[std::size_t(cut.parts[p].points[n])])) << n;
+      EXPECT_EQ(points[n], moved_by(lists.points[cut.parts[p].points[n]])) << n;
   }
 }
 
@@ -1078,7 +1078,7 @@ TEST(OpenFoam, DamagedFilesAreRefusedAndNothingElseHappens) {
       Random random(5);
       for (int n = 0; n < 60; ++n) {
         std::string other = whole;
-        for (int k = 0; k < 3; ++k) other[std::size_t(random.below(int(other.size())))] = char(random.below(256));
+        for (int k = 0; k < 3; ++k) other[random.below(int(other.size()))] = char(random.below(256));
         with(other);
       }
       with(whole + whole);

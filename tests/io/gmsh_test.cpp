@@ -113,11 +113,11 @@ struct MshMesh {
     void pieces(bool of_parts) {
       std::array<std::vector<std::pair<int, std::vector<int>>>, 4> of;
       for (auto const& [key, groups] : mesh.physical)
-        if (mesh.cut_from.contains(key) == of_parts) of[std::size_t(key.first)].emplace_back(key.second, groups);
+        if (mesh.cut_from.contains(key) == of_parts) of[key.first].emplace_back(key.second, groups);
       for (auto const& list : of) s(std::int64_t(list.size()));
       line();
       for (int dimension = 0; dimension < 4; ++dimension)
-        for (auto const& [tag, groups] : of[std::size_t(dimension)]) {
+        for (auto const& [tag, groups] : of[dimension]) {
           i(tag);
           if (of_parts) {
             for (int const whole : mesh.cut_from.at({dimension, tag})) i(whole);
@@ -298,7 +298,7 @@ MshMesh msh_of(Mesh const& mesh) {
     return tags;
   };
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    int const type = msh_type(mesh.elements.type[std::size_t(e)]);
+    int const type = msh_type(mesh.elements.type[e]);
     if (out.blocks.empty() || out.blocks.back().type != type) out.blocks.push_back({mesh.dimension, 1, type, {}});
     out.blocks.back().nodes.push_back(row(mesh.elements.corners(e)));
   }
@@ -418,7 +418,7 @@ TEST(GmshInParts, IsTheMeshThatItWasCutFrom) {
     MshMesh whole = msh_of(box());
     whole.physical[{2, 3}] = {};  // of no group: by its piece of geometry
     for (Index n = 0; n < box().n_nodes(); ++n)
-      if (n % 3 == 2) whole.periodic.push_back({whole.tags[std::size_t(n)], whole.tags[std::size_t(n) - 2]});
+      if (n % 3 == 2) whole.periodic.push_back({whole.tags[n], whole.tags[std::size_t(n) - 2]});
     write_bytes(folder.file("whole.msh"), whole.text({41, binary}));
     write_bytes(folder.file("parts.msh"), in_parts(whole).text({41, binary}));
     Mesh const want = read_mesh(folder.file("whole.msh")), mesh = read_mesh(folder.file("parts.msh"));
@@ -479,7 +479,7 @@ TEST_P(Gmsh, PeriodicLinksAreConnections) {
       Mesh const source = turned ? sector : box();
       MshMesh msh = msh_of(source);
       for (Index n = 0; n < source.n_nodes(); ++n)
-        if (n % 3 == 2) msh.periodic.push_back({msh.tags[std::size_t(n)], msh.tags[std::size_t(n) - 2]});
+        if (n % 3 == 2) msh.periodic.push_back({msh.tags[n], msh.tags[std::size_t(n) - 2]});
       std::array<char, 400> text{};
       std::snprintf(text.data(), text.size(), "1 0 0 0 0 %.17g %.17g 0 0 %.17g %.17g 0 0 0 0 1", std::cos(angle),
                     -std::sin(angle), std::sin(angle), std::cos(angle));

@@ -284,7 +284,7 @@ TEST_F(HostileHdf5, GroupsThatHdf5ItselfLinksToAreKnown) {
 TEST_F(HostileHdf5, WhatIsReadBackMustBeWhatWasWritten) {
   auto const first = [&](int c) {
     auto const& x = mesh_.coordinates;
-    return std::array<double const*, 3>{x.x.data(), x.y.data(), x.z.data()}[std::size_t(c)];
+    return std::array<double const*, 3>{x.x.data(), x.y.data(), x.z.data()}[c];
   };
   auto const compare = [&] {
     cgns::File const file(path_, cgns::File::Mode::read);
@@ -295,7 +295,7 @@ TEST_F(HostileHdf5, WhatIsReadBackMustBeWhatWasWritten) {
   compare();
   change([&](hid_t file) {
     hid_t const data = H5Dopen2(file, (x_ + "/ data").c_str(), H5P_DEFAULT);
-    std::vector<double> values(std::size_t(mesh_.zones[0].size()));
+    std::vector<double> values(mesh_.zones[0].size());
     H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     values[7] = std::nextafter(values[7], 100.0);
     H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());

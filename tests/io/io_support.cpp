@@ -9,7 +9,7 @@ namespace {
 void dump(int file, double id, std::string const& path, std::map<std::string, std::string>& out) {
   int children = 0;
   if (cgio_number_children(file, id, &children) != 0) throw std::runtime_error("cannot list " + path);
-  std::vector<double> ids(std::size_t(std::max(children, 1)));
+  std::vector<double> ids(std::max(children, 1));
   int found = 0;
   if (children > 0) cgio_children_ids(file, id, 1, children, &found, ids.data());
   for (int c = 0; c < found; ++c) {

@@ -178,7 +178,7 @@ TEST(WriteMesh, TheMidLevelLibraryReadsTheSameFile) {
     cg_zone_read(file, 1, z, name, size);
     EXPECT_EQ(name, mesh.zones[z - 1].name);
     for (int a = 0; a < 3; ++a) EXPECT_EQ(size[a], mesh.zones[z - 1].extent[a]);
-    std::vector<double> y(std::size_t(mesh.zones[z - 1].size()));
+    std::vector<double> y(mesh.zones[z - 1].size());
     cgsize_t const one[3] = {1, 1, 1};
     ASSERT_EQ(cg_coord_read(file, 1, z, "CoordinateY", CGNS_ENUMV(RealDouble), one, size, y.data()), CG_OK);
     EXPECT_EQ(

@@ -21,7 +21,7 @@ inline std::vector<Vec3> places_amid(ElementType type, std::vector<std::vector<i
   std::vector<Vec3> out = corners.at(type);
   for (auto const& list : amid) {
     Vec3 sum;
-    for (int const c : list) sum += corners.at(type)[std::size_t(c)];
+    for (int const c : list) sum += corners.at(type)[c];
     out.push_back((1 / double(list.size())) * sum);
   }
   return out;

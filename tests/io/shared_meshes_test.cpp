@@ -110,7 +110,7 @@ TEST(StandIns, SlottedAirfoilIsWiredOnPartsOfFacesWithWakeCutsAndThinCells) {
   Mesh const mesh = read_mesh(shared_mesh("slotted_airfoil.cgns"));
   int cuts = 0;
   for (auto const& face : mesh.interfaces) {
-    EXPECT_LT(face.range.extent(1), mesh.zones[std::size_t(face.zone)].extent[1]) << face.name;
+    EXPECT_LT(face.range.extent(1), mesh.zones[face.zone].extent[1]) << face.name;
     cuts += face.zone == face.donor_zone ? 1 : 0;
   }
   EXPECT_EQ(cuts, 6);
@@ -119,7 +119,7 @@ TEST(StandIns, SlottedAirfoilIsWiredOnPartsOfFacesWithWakeCutsAndThinCells) {
   for (auto const& patch : mesh.patches) {
     if (patch.kind != PatchKind::wall) continue;
     ++walls;
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     EXPECT_LT(patch.range.extent(1), zone.extent[1]);
     for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
       first = std::min(first, distance(mesh.coordinates[zone.node({0, j, 0})], mesh.coordinates[zone.node({0, j, 1})]));
@@ -130,7 +130,7 @@ TEST(StandIns, SlottedAirfoilIsWiredOnPartsOfFacesWithWakeCutsAndThinCells) {
 
 TEST(StandIns, RowsOfTheWaterTurbineMeetAtMixingPlanesWithoutInterfaces) {
   Mesh const mesh = read_mesh(shared_mesh("water_turbine.cgns"));
-  auto const row = [&](int zone) { return mesh.zones[std::size_t(zone)].name.substr(0, 2); };
+  auto const row = [&](int zone) { return mesh.zones[zone].name.substr(0, 2); };
   for (auto const& face : mesh.interfaces) EXPECT_EQ(row(face.zone), row(face.donor_zone)) << face.name;
   std::vector<std::string> sides;
   for (auto const& patch : mesh.patches)

@@ -106,7 +106,7 @@ Mesh all_volumes() {
   // In the order of the file: tetrahedra, pyramids, prisms.
   for (ElementType const type : {ElementType::tetrahedron, ElementType::pyramid, ElementType::prism}) {
     for (Index e = 0; e < mesh.n_elements(); ++e)
-      if (mesh.elements.type[std::size_t(e)] == type) out.add_element(type, mesh.elements.nodes[e]);
+      if (mesh.elements.type[e] == type) out.add_element(type, mesh.elements.nodes[e]);
     if (type != ElementType::pyramid) continue;
     std::array<Index32, max_face_corners> room{};
     for (int f = 0; f < 6; ++f) {
@@ -166,7 +166,7 @@ TEST_P(Ugrid, MeshesAreReadAsTheyAre) {
     for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(mesh.coordinates[n], want.coordinates[n]);
     ASSERT_EQ(mesh.patches.size(), want.patches.size());
     for (auto const& patch : mesh.patches) {
-      auto const& other = want.patches[std::size_t(10 - std::stoi(patch.name.substr(8)))];
+      auto const& other = want.patches[10 - std::stoi(patch.name.substr(8))];
       EXPECT_EQ(patch.faces.size(), other.faces.size());
       EXPECT_EQ(patch_nodes(patch), patch_nodes(other));
     }

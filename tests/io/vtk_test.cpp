@@ -42,7 +42,7 @@ std::string base64(std::string const& bytes) {
   for (std::size_t n = 0; n < bits.size(); n += 6) {
     int v = 0;
     for (std::size_t k = 0; k < 6; ++k) v = 2 * v + (bits[n + k] ? 1 : 0);
-    out += alphabet[std::size_t(v)];
+    out += alphabet[v];
   }
   while (out.size() % 4 != 0) out += '=';
   return out;
@@ -157,7 +157,7 @@ struct VtuWriter {
       face_offsets.push_back(-1);
     };
     for (Index e = 0; e < mesh.n_elements(); ++e) {
-      end(types.at(mesh.elements.type[std::size_t(e)]), mesh.elements.nodes[e], 1);
+      end(types.at(mesh.elements.type[e]), mesh.elements.nodes[e], 1);
       if (type.back() != 42) continue;
       std::array<Index32, max_face_corners> room{};
       faces.push_back(n_sides(mesh, e));

@@ -86,10 +86,10 @@ TEST(WriteSeries, TheCgnsLibraryReadsEveryStep) {
       std::string grid = pointers.substr(std::size_t(32 * s), 32);
       grid.resize(grid.find_last_not_of(' ') + 1);
       ASSERT_EQ(cg_goto(file, 1, "Zone_t", z, grid.c_str(), 0, "end"), CG_OK) << grid;
-      std::vector<double> y(std::size_t(zone->size()));
+      std::vector<double> y(zone->size());
       ASSERT_EQ(cg_array_read_as(2, CGNS_ENUMV(RealDouble), y.data()), CG_OK);
       Coordinates const wanted = at_step(mesh, s);
-      for (Index n = 0; n < zone->size(); ++n) ASSERT_EQ(y[std::size_t(n)], wanted.y(zone->first_node + n));
+      for (Index n = 0; n < zone->size(); ++n) ASSERT_EQ(y[n], wanted.y(zone->first_node + n));
     }
   }
   cg_close(file);

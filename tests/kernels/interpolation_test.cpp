@@ -69,10 +69,9 @@ TEST(InterpolationRows, AreWeightedMeans) {
   Exec().fence();
   for (int r = 0; r < 50; ++r) {
     Vec3 expected;
-    for (std::size_t k = 0; k < weights[std::size_t(r)].size(); ++k)
-      expected +=
-          weights[std::size_t(r)][k] * source[std::size_t(rows.item[std::size_t(rows.first[std::size_t(r)]) + k])];
-    expect_near(value[std::size_t(49 - r)], expected, 1e-6);  // weights are kept in single precision
+    for (std::size_t k = 0; k < weights[r].size(); ++k)
+      expected += weights[r][k] * source[rows.item[std::size_t(rows.first[r]) + k]];
+    expect_near(value[49 - r], expected, 1e-6);  // weights are kept in single precision
   }
 }
 
@@ -104,7 +103,7 @@ TEST(InterpolationLayers, ReadWhatLayersBeforeThemWrote) {
   // f(n) = 2/3 + (1/3) (-1/2)^(n - 1) f(1) for f(0) = 0
   for (int n = 2; n < 40; ++n) {
     double const f = 2.0 / 3 * (1 - std::pow(-0.5, n));
-    expect_near(value[std::size_t(n)], f * Vec3{1, 2, 3}, 1e-14);
+    expect_near(value[n], f * Vec3{1, 2, 3}, 1e-14);
   }
 }
 
@@ -124,7 +123,7 @@ struct OnLattice {
   Arrays x{10};
 
   OnLattice() {
-    for (Index n = 0; n < 125; ++n) value[std::size_t(n)] = linear(shape.position(n));
+    for (Index n = 0; n < 125; ++n) value[n] = linear(shape.position(n));
     Random random(13);
     for (int n = 0; n < 10; ++n) x.field().set(n, random.vector(1));
   }

@@ -44,14 +44,14 @@ struct Corner {
     for (int k = 0; k < 3; ++k) {
       Vec3 direction{k == 0 ? -1.0 : 0, k == 1 ? -1.0 : 0, k == 2 ? -1.0 : 0};
       direction += random.vector(0.1);
-      arm[std::size_t(k)] = (length[std::size_t(k)] / norm(direction)) * direction;
+      arm[k] = (length[k] / norm(direction)) * direction;
     }
     Vec3 const off = Vec3{random.between(0.2, 1), random.between(0.2, 1), random.between(0.2, 1)};
     line = (1 / norm(off)) * off;
     std::vector<kernels::RootNeighbour> neighbours;
     for (int k = 0; k < 3; ++k)
       for (int const m : {k, (k + 1) % 3}) {
-        Vec3 const& a = arm[std::size_t(m)];
+        Vec3 const& a = arm[m];
         neighbours.push_back({Index(m + 1), -1, a});
       }
     table.roots = view<kernels::Root>({{0, 0, 0, 6, 1, 0, line, 0}});
@@ -61,7 +61,7 @@ struct Corner {
   template <class Motion>
   void move(Motion const& motion) {
     for (int n = 0; n < 4; ++n) {
-      Vec3 const x = n == 0 ? Vec3{} : arm[std::size_t(n - 1)];
+      Vec3 const x = n == 0 ? Vec3{} : arm[n - 1];
       u.field().set(n, motion(x));
     }
   }
@@ -70,10 +70,10 @@ struct Corner {
   /// By differences.
   [[nodiscard]] Vec3 difference_found(Vec3 const& mean = {}) {
     std::array<Vec3, 4> at;
-    for (int k = 0; k < 4; ++k) at[std::size_t(k)] = u.read()[k];
+    for (int k = 0; k < 4; ++k) at[k] = u.read()[k];
     double const h = 1e-6;
     auto const moved_on = [&](double step) {
-      for (int k = 0; k < 4; ++k) u.field().set(k, at[std::size_t(k)] + step * rate.read()[k]);
+      for (int k = 0; k < 4; ++k) u.field().set(k, at[k] + step * rate.read()[k]);
       return found(mean);
     };
     Vec3 const before = moved_on(-h), after = moved_on(h);
@@ -84,12 +84,10 @@ struct Corner {
   [[nodiscard]] std::array<double, 3> sines(Vec3 const& along, bool after) {
     std::array<double, 3> out{};
     for (int k = 0; k < 3; ++k) {
-      auto const arm_now = [&](int m) {
-        return after ? arm[std::size_t(m)] + (u.read()[m + 1] - u.read()[0]) : arm[std::size_t(m)];
-      };
+      auto const arm_now = [&](int m) { return after ? arm[m] + (u.read()[m + 1] - u.read()[0]) : arm[m]; };
       Vec3 const normal = cross(arm_now(k), arm_now((k + 1) % 3));
       double const sign = dot(cross(arm[0], arm[1]), arm[2]) < 0 ? 1 : -1;
-      out[std::size_t(k)] = sign * dot(normal, along) / norm(normal);
+      out[k] = sign * dot(normal, along) / norm(normal);
     }
     return out;
   }
@@ -134,7 +132,7 @@ TEST(RootTurn, IsThatOfShortArmsToo) {
       std::vector<kernels::RootNeighbour> neighbours;
       for (int n = 0; n < (at_hub ? 2 : 4); ++n)
         for (int const m : {n, (n + 1) % 4}) {
-          auto const [a, h] = around[std::size_t(m)];
+          auto const [a, h] = around[m];
           neighbours.push_back({Index(m + 1), -1, before.at(a, h) - before.at(0, 0)});
           u.field().set(m + 1, after.at(a, h) - before.at(a, h));
         }
@@ -144,8 +142,7 @@ TEST(RootTurn, IsThatOfShortArmsToo) {
       Arrays still(5);
       Vec3 const found = raw_turn<Vec3>(table, u, still);
       for (int k = 0; k < 3; ++k)
-        EXPECT_LT(distance(from[std::size_t(k)] + kernels::turned_by(found, from[std::size_t(k)]), to[std::size_t(k)]),
-                  0.01)
+        EXPECT_LT(distance(from[k] + kernels::turned_by(found, from[k]), to[k]), 0.01)
             << cell << " " << at_hub << " " << k;
     }
 }
@@ -164,7 +161,7 @@ TEST(RootTurn, OfASharpEdgeIsThatOfItsFaces) {
       for (int n = 0; n < 4; ++n) {
         auto const k = std::size_t(n);
         u.field().set(n + 1, stretch[k] * (rotation_by(turn) * arm[k]) - arm[k]);
-        for (int const m : {n, (n + 1) % 4}) neighbours.push_back({Index(m + 1), -1, arm[std::size_t(m)]});
+        for (int const m : {n, (n + 1) % 4}) neighbours.push_back({Index(m + 1), -1, arm[m]});
       }
       kernels::RootTable<Host> table;
       table.roots = view<kernels::Root>({{0, 0, 0, 8, 1, 0, {}}});
@@ -207,8 +204,8 @@ TEST(RootTurn, IsThatOfAWallOfElementsWithTheSameColumns) {
     Arrays x(4);
     std::vector<Vec3> u, rate;
     for (int k = 0; k < 4; ++k) {
-      if (k > 0) x.field().set(k, corner.arm[std::size_t(k - 1)]);
-      u.push_back(0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
+      if (k > 0) x.field().set(k, corner.arm[k - 1]);
+      u.push_back(0.3 * (k == 0 ? 1 : norm(corner.arm[k - 1])) * random.vector(1));
     }
     Vec3 const spin = random.vector(0.1), shift = random.vector(0.1);
     for (int k = 0; k < 4; ++k) {
@@ -251,7 +248,7 @@ TEST(RootTurn, HasTheRateThatDifferencesHaveAtEdges) {
   for (int n = 0; n < 60; ++n) {
     Corner corner(random);
     for (int k = 0; k < 4; ++k) {
-      corner.u.field().set(k, 0.3 * (k == 0 ? 1 : norm(corner.arm[std::size_t(k - 1)])) * random.vector(1));
+      corner.u.field().set(k, 0.3 * (k == 0 ? 1 : norm(corner.arm[k - 1])) * random.vector(1));
       corner.rate.field().set(k, 0.1 * random.vector(1));
     }
     Vec3 const rate = corner.rate_found();

@@ -91,9 +91,7 @@ struct Lines {
       x.push_back(random.vector(3));
     }
   }
-  [[nodiscard]] Vec3 node(int w) const {
-    return kernels::turned_between(ends, chain, w, 0, t[std::size_t(w)], x[std::size_t(w)]);
-  }
+  [[nodiscard]] Vec3 node(int w) const { return kernels::turned_between(ends, chain, w, 0, t[w], x[w]); }
   /// Ends moved on along their rates.
   [[nodiscard]] Lines after(double dt) const {
     Lines moved = *this;
@@ -104,9 +102,9 @@ struct Lines {
   [[nodiscard]] std::vector<Vec3> row() const {
     kernels::VectorRow<8> at{}, sum{};
     for (int w = 0; w < n; ++w) {
-      at.x[w] = x[std::size_t(w)].x;
-      at.y[w] = x[std::size_t(w)].y;
-      at.z[w] = x[std::size_t(w)].z;
+      at.x[w] = x[w].x;
+      at.y[w] = x[w].y;
+      at.z[w] = x[w].z;
     }
     kernels::TurnedRow<8>{ends, chain, 0, t.data(), n}.add_to(Index(1), at, sum);
     std::vector<Vec3> out;
@@ -121,7 +119,7 @@ TEST_P(TurnedLines, RowsAreTheirNodes) {
   auto const [law, ends] = GetParam();
   Lines const lines(law, ends, 3);
   std::vector<Vec3> const row = lines.row();
-  for (int w = 0; w < Lines::n; ++w) EXPECT_EQ(row[std::size_t(w)], lines.node(w)) << w;
+  for (int w = 0; w < Lines::n; ++w) EXPECT_EQ(row[w], lines.node(w)) << w;
 }
 
 TEST_P(TurnedLines, RatesAreDifferences) {
@@ -134,7 +132,7 @@ TEST_P(TurnedLines, RatesAreDifferences) {
   for (int w = 0; w < Lines::n; ++w) {
     Vec3 const rate = lines.node(w), difference = (0.5 / dt) * (after.node(w) - before.node(w));
     EXPECT_LT(distance(rate, difference), 1e-8 * (1 + norm(difference))) << w;
-    EXPECT_EQ(row[std::size_t(w)], rate) << w;
+    EXPECT_EQ(row[w], rate) << w;
   }
 }
 
@@ -145,8 +143,8 @@ TEST_P(TurnedLines, NothingIsAddedAtAnEndThatTurnsAboutItself) {
   for (int w = 0; w < Lines::n; ++w)
     for (unsigned end = 0; end < (as_one ? 1 : 2); ++end) {
       Index const at = Index(end) * Lines::n + w;
-      lines.t[std::size_t(w)] = end;
-      lines.x[std::size_t(w)] = lines.ends.values[at].pivot;
+      lines.t[w] = end;
+      lines.x[w] = lines.ends.values[at].pivot;
       bool const turns_alone = (ends & (1u + end)) != 0 && (as_one || (ends & (2u - end)) == 0);
       if (!turns_alone) continue;
       EXPECT_EQ(lines.node(w), Vec3{}) << w << " " << end;

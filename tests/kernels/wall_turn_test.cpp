@@ -288,7 +288,7 @@ TEST(WallTurn, IsExactlyNothingWhereNothingMoves) {
     Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v;
     std::vector<Vec3> arms;
     for (double const length : {1.0, 1e-3, 1.0, 2e-3}) arms.push_back(length * random.vector(1));
-    auto const arm = [&](Index k) { return arms[std::size_t(k)]; };
+    auto const arm = [&](Index k) { return arms[k]; };
     EXPECT_EQ(kernels::twist_about(axis, Vec3{}, 4, arm, arm, kernels::ArmWeights(4, arm)), Vec3{});
   }
 }
@@ -335,7 +335,7 @@ TEST(WallTurn, OfAWallThatStretchesAndShearsIsThePolarRotation) {
     if (a * d - b * c < 0.1) continue;
     double const aspect = std::pow(10, random.between(-3, 3)), skew = random.between(-0.5, 0.5);
     std::vector<Vec3> const arms{{1, 0, 0}, {skew, aspect, 0}, {-1.3, 0, 0}, {-skew, -0.7 * aspect, 0}};
-    auto const before = [&](Index k) { return arms[std::size_t(k)]; };
+    auto const before = [&](Index k) { return arms[k]; };
     auto const after = [&](Index k) {
       Vec3 const p = before(k);
       return Vec3{a * p.x + b * p.y, c * p.x + d * p.y, 0};
@@ -356,8 +356,8 @@ TEST(WallTurn, IsThatOfTheOtherArmsWhereOneIsAlongTheNormal) {
     double const angle = random.between(-1, 1);
     Vec3 const across = unit(cross(axis, random.vector(1)));
     std::vector<Vec3> const arms{axis + random.vector(1e-16), axis + across, axis + across + 0.8 * cross(axis, across)};
-    auto const before = [&](Index k) { return arms[std::size_t(k)]; };
-    auto const after = [&](Index k) { return rotation_about({}, axis, angle)(arms[std::size_t(k)]); };
+    auto const before = [&](Index k) { return arms[k]; };
+    auto const after = [&](Index k) { return rotation_about({}, axis, angle)(arms[k]); };
     Vec3 const twist = axis_times_angle(kernels::twist_about(axis, Vec3{}, 3, before, after, kernels::UnweighedArms{}));
     EXPECT_LT(distance(twist, angle * axis), 1e-13) << n;
   }
@@ -369,10 +369,8 @@ TEST(WallTurn, IsNotThatOfArmsOfRoundOff) {
   for (int n = 0; n < 50; ++n) {
     double const angle = random.between(-1, 1);
     std::vector<Vec3> const arms{{1, 0.2, 0}, {0.1, 0.7, 0}, {-1, 0.3, 0}, 1e-14 * random.vector(1)};
-    auto const before = [&](Index k) { return arms[std::size_t(k)]; };
-    auto const after = [&](Index k) {
-      return k == 3 ? arms[3] : rotation_about({}, {0, 0, 1}, angle)(arms[std::size_t(k)]);
-    };
+    auto const before = [&](Index k) { return arms[k]; };
+    auto const after = [&](Index k) { return k == 3 ? arms[3] : rotation_about({}, {0, 0, 1}, angle)(arms[k]); };
     Vec3 const twist =
         axis_times_angle(kernels::twist_about(Vec3{0, 0, 1}, Vec3{}, 4, before, after, kernels::ArmWeights(4, before)));
     EXPECT_LT(distance(twist, {0, 0, angle}), 1e-12) << n;

@@ -143,7 +143,7 @@ TEST(BladeRow, ARegionUpstreamIsNoEndOfTheRow) {
   Patch part{"part", "", PatchKind::region, {}, sides->zone, sides->range, {}, {}};
   part.range.begin[0] = 6;
   part.range.end[0] = 12;
-  Zone const& zone = mesh.zones[std::size_t(part.zone)];
+  Zone const& zone = mesh.zones[part.zone];
   for (Index3 const& corner : {part.range.begin, Index3{11, part.range.end[1] - 1, 0}})
     ASSERT_TRUE(mesh.coordinates.x(zone.node(corner)) > -0.5 && mesh.coordinates.x(zone.node(corner)) < -0.1);
   mesh.patches.push_back(part);

@@ -62,10 +62,9 @@ TEST(Boundary, FacetsOfBothKindsLookIntoTheMesh) {
       PatchSurface const surface(boundary, {p});
       Vec3 sum;
       for (GridFacet const& f : surface.facets()) {
-        Vec3 const a = surface.points[std::size_t(f[0])];
-        for (int k = 2; k < 4 && f[std::size_t(k)] >= 0; ++k)
-          sum += 0.5 * cross(surface.points[std::size_t(f[std::size_t(k - 1)])] - a,
-                             surface.points[std::size_t(f[std::size_t(k)])] - a);
+        Vec3 const a = surface.points[f[0]];
+        for (int k = 2; k < 4 && f[k] >= 0; ++k)
+          sum += 0.5 * cross(surface.points[f[k - 1]] - a, surface.points[f[k]] - a);
       }
       return sum;
     };

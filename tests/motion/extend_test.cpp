@@ -27,7 +27,7 @@ Mesh channel(int n, std::function<double(double y)> const& side) {
   });
   std::array<std::string, 6> const names{"inlet", "outlet", "hub", "case", "blade", "far"};
   for (int axis = 0; axis < 3; ++axis)
-    for (int s = 0; s < 2; ++s) builder.patch(names[std::size_t(2 * axis + s)], PatchKind::wall, zone, axis, s);
+    for (int s = 0; s < 2; ++s) builder.patch(names[2 * axis + s], PatchKind::wall, zone, axis, s);
   return builder.finish();
 }
 
@@ -190,7 +190,7 @@ TEST(Extend, NothingDependsOnHowZonesAreStoredOrWhetherTheyAreHexahedra) {
     BoundaryMotion const same(other.mesh, resolve(other.mesh, m));
     for (auto const& [patch, r] : {std::pair("blade", 0), std::pair("hub", 1)})
       for (auto const& [n, u] : displacements(same, patch, r))
-        EXPECT_LE(distance(u, expected.at(other.old_node[std::size_t(n)])), 1e-12) << seed << ' ' << patch;
+        EXPECT_LE(distance(u, expected.at(other.old_node[n])), 1e-12) << seed << ' ' << patch;
   }
   Mesh const elements = to_hexahedra(mesh);
   UnstructuredTopology const topology = make_topology(elements);

@@ -46,7 +46,7 @@ void shuffle(Faces& f, unsigned seed) {
 std::multiset<std::vector<int>> faces_of(FaceGrids const& found) {
   std::multiset<std::vector<int>> out;
   for (FaceGrid const& g : found.grids) {
-    auto const at = [&](int a, int b) { return g.point[std::size_t(a + g.extent[0] * b)]; };
+    auto const at = [&](int a, int b) { return g.point[a + g.extent[0] * b]; };
     for (int b = 0; b + 1 < g.extent[1]; ++b)
       for (int a = 0; a + 1 < g.extent[0]; ++a) {
         std::vector<int> face{at(a, b), at(a + 1, b), at(a + 1, b + 1), at(a, b + 1)};
@@ -98,7 +98,7 @@ TEST(FaceGrids, AClosedSurfaceIsCutAcross) {
     // Its first line comes again at the end.
     for (int k = 0; k < 5; ++k) {
       int const first = g.extent[0] == 13 ? 13 * k : k, last = g.extent[0] == 13 ? 13 * k + 12 : 12 * 5 + k;
-      EXPECT_EQ(g.point[std::size_t(first)], g.point[std::size_t(last)]);
+      EXPECT_EQ(g.point[first], g.point[last]);
     }
   }
 }
@@ -119,9 +119,9 @@ TEST(FaceGrids, ABoxHasSixSides) {
         for (int b = 0; b < n; ++b) {
           auto const at = [&](int da, int db) {
             std::array<int, 3> p{};
-            p[std::size_t(axis)] = side * n;
-            p[std::size_t((axis + 1) % 3)] = a + da;
-            p[std::size_t((axis + 2) % 3)] = b + db;
+            p[axis] = side * n;
+            p[(axis + 1) % 3] = a + da;
+            p[(axis + 2) % 3] = b + db;
             return node(p);
           };
           GridFacet face{at(0, 0), at(1, 0), at(1, 1), at(0, 1)};

@@ -360,7 +360,7 @@ TEST(FacetSurface, KinkedGridLinesHaveAFootForEveryPoint) {
       int left = 0;
       double edge = 1e9;
       for (int q = 0; q < 4; ++q) {
-        Vec3 const a = list.points[std::size_t(f[q])], d = list.points[std::size_t(f[(q + 1) % 4])] - a;
+        Vec3 const a = list.points[f[q]], d = list.points[f[(q + 1) % 4]] - a;
         left += d.x * (py - a.y) - d.y * (px - a.x) > 0 ? 1 : 0;
         double const t = std::clamp(((px - a.x) * d.x + (py - a.y) * d.y) / dot(d, d), 0.0, 1.0);
         edge = std::min(edge, std::hypot(px - a.x - t * d.x, py - a.y - t * d.y));

@@ -117,7 +117,7 @@ TEST(FfdGradient, HoldsForWhatGoesAlongWithTheLattice) {
   // The side alone: nothing of it stands in the lattice.
   std::vector<Vec3> g(plan.boundary_nodes().size());
   for (auto const& place : plan.boundary_places())
-    if (mesh.patches[std::size_t(place.patch)].name == "i_max") g[std::size_t(place.boundary_node)] = {1, 0, 0};
+    if (mesh.patches[place.patch].name == "i_max") g[place.boundary_node] = {1, 0, 0};
   double sum = 0;
   for (Vec3 const& slope : ffd_gradient(plan, 0, g)) sum += slope.x;
   EXPECT_GT(sum, 1);

@@ -52,7 +52,7 @@ TEST(BSplineBasis, IsWhatTheRecursionOfDeBoorSays) {
         ASSERT_LE(values.first + degree, count - 1);
         for (int n = 0; n < count; ++n) {
           bool const here = n >= values.first && n <= values.first + degree;
-          EXPECT_NEAR(here ? values.value[std::size_t(n - values.first)] : 0, plain[std::size_t(n)], 1e-14)
+          EXPECT_NEAR(here ? values.value[n - values.first] : 0, plain[n], 1e-14)
               << count << " " << degree << " " << n << " " << s;
         }
       }
@@ -67,8 +67,8 @@ TEST(BSplineBasis, EndsExactlyInItsFirstAndLastFunction) {
       EXPECT_EQ(low.first, 0);
       EXPECT_EQ(high.first + degree, count - 1);
       for (int n = 0; n <= degree; ++n) {
-        EXPECT_EQ(low.value[std::size_t(n)], n == 0 ? 1 : 0);
-        EXPECT_EQ(high.value[std::size_t(n)], n == degree ? 1 : 0);
+        EXPECT_EQ(low.value[n], n == 0 ? 1 : 0);
+        EXPECT_EQ(high.value[n], n == degree ? 1 : 0);
       }
     }
 }
@@ -84,10 +84,9 @@ TEST(BSplineBasis, SlopesAreThoseOfCentredDifferences) {
       auto const at = basis.with_slopes(s);
       for (int m = 0; m <= degree; ++m) {
         int const i = at.first + m;
-        double const difference = (plain_splines(knots, degree, s + h)[std::size_t(i)] -
-                                   plain_splines(knots, degree, s - h)[std::size_t(i)]) /
-                                  (2 * h);
-        EXPECT_NEAR(at.slope[std::size_t(m)], difference, 1e-7);
+        double const difference =
+            (plain_splines(knots, degree, s + h)[i] - plain_splines(knots, degree, s - h)[i]) / (2 * h);
+        EXPECT_NEAR(at.slope[m], difference, 1e-7);
       }
     }
   }

@@ -39,13 +39,13 @@ Motion rules(SectionsRule const& rule, SlipRule::Surface surface) {
 /// Displacements by all rules but that of the walls: of the ends at inlet and outlet, others at all nodes of the mesh.
 std::vector<std::array<Vec3, 3>> everywhere(Mesh const& mesh, SectionsRule const& rule, SlipRule::Surface surface) {
   BoundaryMotion const motion(mesh, resolve(mesh, rules(rule, surface)));
-  std::vector<std::array<Vec3, 3>> out(std::size_t(mesh.n_nodes()));
+  std::vector<std::array<Vec3, 3>> out(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (int const r : {blade, ends, sides}) {
       Vec3 const p = mesh.coordinates[n];
       Index const i = n % mesh.zones.front().extent[0];
       if (r == ends && i != 0 && i != mesh.zones.front().extent[0] - 1) continue;
-      motion.displacement(r, {&p, 1}, {&out[std::size_t(n)][std::size_t(r)], 1});
+      motion.displacement(r, {&p, 1}, {&out[n][r], 1});
     }
   return out;
 }
@@ -59,9 +59,8 @@ double apart(double radius) {
     Vec3 const p = bent.coordinates[n];
     double const r = std::hypot(p.y, p.z), c = p.y / r, s = p.z / r;
     for (int const k : {blade, ends, sides}) {
-      Vec3 const u = annular[std::size_t(n)][std::size_t(k)];
-      worst = std::max(worst,
-                       distance(linear[std::size_t(n)][std::size_t(k)], {u.x, c * u.y + s * u.z, c * u.z - s * u.y}));
+      Vec3 const u = annular[n][k];
+      worst = std::max(worst, distance(linear[n][k], {u.x, c * u.y + s * u.z, c * u.z - s * u.y}));
     }
   }
   return worst;
@@ -77,7 +76,7 @@ TEST(LinearRows, AShiftAlongThePitchShiftsAllOfTheRow) {
   SectionsRule rule;
   rule.lean = {{{0, 0.125}, {1, 0.125}}};
   for (auto const& node : everywhere(cascade(), rule, SlipRule::Surface::plane))
-    for (int const r : {blade, sides}) EXPECT_LT(distance(node[std::size_t(r)], {0, 0, 0.125}), 1e-15);
+    for (int const r : {blade, sides}) EXPECT_LT(distance(node[r], {0, 0, 0.125}), 1e-15);
 }
 
 TEST(LinearRows, ABladeThatDoesNotMoveMovesNothing) {
@@ -92,7 +91,7 @@ TEST(LinearRows, CopiesAPitchApartMoveAlike) {
   int compared = 0;
   for (AnyConnection const& c : connections_of(mesh))
     for (auto const& [own, donor] : boundary.pairs(c.number)) {
-      EXPECT_LT(distance(u[std::size_t(own)][sides], u[std::size_t(donor)][sides]), 1e-15);
+      EXPECT_LT(distance(u[own][sides], u[donor][sides]), 1e-15);
       ++compared;
     }
   EXPECT_GT(compared, 100);
@@ -106,7 +105,7 @@ TEST(LinearRows, SidesFollowTheEdgesOfTheBlade) {
   for (int const i : {10, 24})
     for (int j = 0; j < zone.extent[1]; ++j)
       for (int const k : {0, zone.extent[2] - 1}) {
-        auto const& node = u[std::size_t(zone.node({i, j, k}))];
+        auto const& node = u[zone.node({i, j, k})];
         EXPECT_LT(distance(node[blade], node[sides]), 1e-14);
       }
 }

@@ -52,8 +52,7 @@ inline Vec3 plain_sum(FfdRule const& rule, std::vector<Vec3> const& values, Vec3
   Vec3 sum{};
   for (int k = 0; k < rule.counts[2]; ++k)
     for (int j = 0; j < rule.counts[1]; ++j)
-      for (int i = 0; i < rule.counts[0]; ++i)
-        sum += a[std::size_t(i)] * b[std::size_t(j)] * c[std::size_t(k)] * values[rule.number(i, j, k)];
+      for (int i = 0; i < rule.counts[0]; ++i) sum += a[i] * b[j] * c[k] * values[rule.number(i, j, k)];
   return sum;
 }
 
@@ -79,7 +78,7 @@ inline std::vector<Vec3> at_control_points(FfdRule const& rule, std::function<Ve
     if (degree == 0) return 0.5;
     std::vector<double> const knots = plain_knots(rule.counts[a], degree);
     double sum = 0;
-    for (int m = n + 1; m <= n + degree; ++m) sum += knots[std::size_t(m)];
+    for (int m = n + 1; m <= n + degree; ++m) sum += knots[m];
     return sum / degree;
   };
   std::vector<Vec3> out;

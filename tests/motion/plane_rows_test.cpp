@@ -47,15 +47,15 @@ using ByRule = std::array<Vec3, 3>;
 
 /// At the nodes of a plane mesh: the rule of the ends at theirs, the others everywhere.
 std::vector<ByRule> displacements(BoundaryMotion const& motion, Mesh const& plane) {
-  std::vector<char> at_end(std::size_t(plane.n_nodes()), 0);
+  std::vector<char> at_end(plane.n_nodes(), 0);
   for (Patch const& patch : plane.patches)
     for (Index f = 0; patch.name != "blade" && f < patch.faces.size(); ++f)
-      for (Index32 const n : patch.faces[f]) at_end[std::size_t(n)] = 1;
+      for (Index32 const n : patch.faces[f]) at_end[n] = 1;
   std::vector<ByRule> out(at_end.size());
   for (std::size_t n = 0; n < out.size(); ++n)
     for (int const r : {blade_rule, ends_rule, sides_rule}) {
       Vec3 const p = plane.coordinates[Index(n)];
-      if (r != ends_rule || at_end[n] != 0) motion.displacement(r, {&p, 1}, {&out[n][std::size_t(r)], 1});
+      if (r != ends_rule || at_end[n] != 0) motion.displacement(r, {&p, 1}, {&out[n][r], 1});
     }
   return out;
 }
@@ -89,8 +89,7 @@ TEST(PlaneRows, MoveAsRowsBetweenTwoPlanesDo) {
     double const largest = largest_of(v, std::size_t(r));
     EXPECT_GT(largest, 0.005);
     double apart = 0;
-    for (std::size_t n = 0; n < u.size(); ++n)
-      apart = std::max(apart, distance(u[n][std::size_t(r)], v[n][std::size_t(r)]));
+    for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, distance(u[n][r], v[n][r]));
     EXPECT_LT(apart, 1e-10 * largest) << r;
   }
 }
@@ -105,8 +104,7 @@ void expect_moves_as_in_plane(Mesh const& two_planes, Boundary const& boundary, 
   double largest = 0, apart = 0;
   for (int const r : {blade_rule, ends_rule, sides_rule}) {
     largest = std::max(largest, largest_of(wanted, std::size_t(r)));
-    for (std::size_t n = 0; n < u.size(); ++n)
-      apart = std::max(apart, distance(u[n][std::size_t(r)], wanted[n][std::size_t(r)]));
+    for (std::size_t n = 0; n < u.size(); ++n) apart = std::max(apart, distance(u[n][r], wanted[n][r]));
   }
   EXPECT_GT(largest, 0.005);
   EXPECT_LT(apart, 1e-10 * largest);
@@ -166,8 +164,8 @@ TEST(PlaneRows, FollowReplicatesTheMotionOfTheBladeAndTapersAlongTheRadius) {
                          : r > trailing ? (outlet - r) / (outlet - trailing)
                                         : 1;
     double const a = std::atan2(p.y, p.x) + turn(at), moved = r + share * out(at);
-    worst = std::max(worst, distance(p + u[std::size_t(n)][sides_rule], moved * Vec3{std::cos(a), std::sin(a), 0}));
-    largest = std::max(largest, norm(u[std::size_t(n)][sides_rule]));
+    worst = std::max(worst, distance(p + u[n][sides_rule], moved * Vec3{std::cos(a), std::sin(a), 0}));
+    largest = std::max(largest, norm(u[n][sides_rule]));
   }
   EXPECT_GT(largest, 0.1);
   // Between the lines of a blade of 17 of them the motion of its camber line is a smooth curve through them.
@@ -190,7 +188,7 @@ TEST(PlaneRows, SlideTurnsTheEndsByTheAngleOfTheEdgesAndKeepsTheirRadius) {
     for (Index f = 0; f < patch.faces.size(); ++f)
       for (Index32 const n : patch.faces[f]) {
         Vec3 const p = mesh.coordinates[n];
-        EXPECT_LT(distance(p + u[std::size_t(n)][ends_rule], wanted(p)), 1e-13) << patch.name;
+        EXPECT_LT(distance(p + u[n][ends_rule], wanted(p)), 1e-13) << patch.name;
       }
   }
 }
@@ -208,7 +206,7 @@ TEST(PlaneRows, ATurnAboutTheAxisTurnsAllOfTheRowWhereverItsPlaneIs) {
   EXPECT_GT(largest_of(u, ends_rule), 0.1);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (int const r : {ends_rule, sides_rule}) {
-      Vec3 const given = u[std::size_t(n)][std::size_t(r)];
+      Vec3 const given = u[n][r];
       if (r == ends_rule && given == Vec3{}) continue;
       EXPECT_LT(distance(given, displacement(turn, mesh.coordinates[n])), 1e-13);
     }
@@ -221,13 +219,13 @@ TEST(PlaneRows, CopiesAPitchApartMoveAlikeAndSidesMeetTheBlade) {
   int met = 0;
   for (Connection const& c : mesh.connections)
     for (std::size_t k = 0; k < c.nodes.size(); ++k) {
-      Vec3 const own = u[std::size_t(c.nodes[k])][sides_rule], donor = u[std::size_t(c.donor_nodes[k])][sides_rule];
+      Vec3 const own = u[c.nodes[k]][sides_rule], donor = u[c.donor_nodes[k]][sides_rule];
       EXPECT_LT(distance(c.periodic->declared.rotation * own, donor), 1e-14);
       double const r = norm(mesh.coordinates[c.nodes[k]]);
       bool const edge = std::abs(r - 1) < 1e-12 ||
                         std::abs(r - std::exp(2 * std::numbers::pi / (blades * plane_cascade_pitch))) < 1e-12;
       if (!edge) continue;
-      EXPECT_LT(distance(own, u[std::size_t(c.nodes[k])][blade_rule]), 1e-10 * largest);
+      EXPECT_LT(distance(own, u[c.nodes[k]][blade_rule]), 1e-10 * largest);
       ++met;
     }
   EXPECT_EQ(met, 2);
@@ -244,9 +242,8 @@ TEST(PlaneRows, AreStraightOnesWhereTheRadiusIsLarge) {
       Vec3 const p = bent.coordinates[n];
       double const r = norm(p), c = p.x / r, s = p.y / r;
       for (int const k : {blade_rule, ends_rule, sides_rule}) {
-        Vec3 const v = u[std::size_t(n)][std::size_t(k)];
-        worst = std::max(worst,
-                         distance(linear[std::size_t(n)][std::size_t(k)], {c * v.x + s * v.y, c * v.y - s * v.x, 0}));
+        Vec3 const v = u[n][k];
+        worst = std::max(worst, distance(linear[n][k], {c * v.x + s * v.y, c * v.y - s * v.x, 0}));
       }
     }
     return worst;
@@ -263,8 +260,7 @@ TEST(PlaneRows, OfATranslationTakeTheAxisAlongTheFlowOrAcrossThePlane) {
              across = in_plane(mesh, plane_redesign(), about_z);
   EXPECT_GT(largest_of(along, sides_rule), 0.01);
   for (std::size_t n = 0; n < along.size(); ++n)
-    for (int const r : {blade_rule, ends_rule, sides_rule})
-      EXPECT_LT(distance(along[n][std::size_t(r)], across[n][std::size_t(r)]), 1e-15);
+    for (int const r : {blade_rule, ends_rule, sides_rule}) EXPECT_LT(distance(along[n][r], across[n][r]), 1e-15);
 }
 
 TEST(PlaneRows, ABladeThatDoesNotMoveMovesNothing) {

@@ -176,7 +176,7 @@ TEST_P(RealRow, SectionsOfTheBladeAsATargetMoveBothSidesOfIt) {
       if (patch.range.extent(a) > 1) extent[d++] = patch.range.extent(a);
     auto const nodes = points(patch.zone, patch.range);
     auto const radius = [&](Vec3 const& x) { return norm(cross(axis.direction, x - axis.origin)); };
-    auto const at = [&](int a, int b) { return nodes[std::size_t(a + extent[0] * b)]; };
+    auto const at = [&](int a, int b) { return nodes[a + extent[0] * b]; };
     bool const rises = std::abs(radius(at(extent[0] - 1, 0)) - radius(at(0, 0))) >
                        std::abs(radius(at(0, extent[1] - 1)) - radius(at(0, 0)));  // along direction 0
     auto& side = sides.emplace_back();

@@ -157,8 +157,7 @@ TEST(ShockCells, ValuesInCellsAreAveragedAroundNodesAcrossInterfacesToo) {
   std::vector<double> const& p = solution.values.at("Pressure");
   auto const node = [&](int i, int j, int k) {
     double sum = 0;
-    for (int n = 0; n < 8; ++n)
-      sum += p[std::size_t(i - 1 + (n & 1) + 16 * (j - 1 + (n >> 1 & 1) + 8 * (k - 1 + (n >> 2))))];
+    for (int n = 0; n < 8; ++n) sum += p[i - 1 + (n & 1) + 16 * (j - 1 + (n >> 1 & 1) + 8 * (k - 1 + (n >> 2)))];
     return sum / 8;
   };
   ShockCells const found = find_shock(whole, solution, search_for(Sensor::jump, 0.2), all(whole));
@@ -172,7 +171,7 @@ TEST(ShockCells, ValuesInCellsAreAveragedAroundNodesAcrossInterfacesToo) {
           high = std::max(high, q);
           mean += q / 8;
         }
-        EXPECT_EQ(found.cells[std::size_t(i + 16 * (j + 8 * k))] != 0, (high - low) / mean >= 0.2);
+        EXPECT_EQ(found.cells[i + 16 * (j + 8 * k)] != 0, (high - low) / mean >= 0.2);
       }
 }
 
@@ -233,9 +232,8 @@ TEST(ShockCells, SmallGroupsAreDroppedAndLayersGrowFromTheOthers) {
     for (int j = 0; j < 8; ++j)
       for (int i = 0; i < 16; ++i) {
         bool near = false;
-        for (int d = -2; d <= 2; ++d)
-          near = near || (i + d >= 0 && i + d < 16 && shock[std::size_t(i + d + 16 * (j + 8 * k))] != 0);
-        EXPECT_EQ(grown.cells[std::size_t(i + 16 * (j + 8 * k))] != 0, near);
+        for (int d = -2; d <= 2; ++d) near = near || (i + d >= 0 && i + d < 16 && shock[i + d + 16 * (j + 8 * k)] != 0);
+        EXPECT_EQ(grown.cells[i + 16 * (j + 8 * k)] != 0, near);
       }
   search.smallest = int(n) + 1;
   search.grow = 0;
@@ -250,7 +248,7 @@ FlowSolution raised(Mesh const& mesh, int i, std::vector<int> const& layers) {
   std::fill(p.begin(), p.end(), 1.0);
   Zone const& zone = mesh.zones.front();
   for (int const k : layers)
-    for (int j = 0; j < zone.extent[1]; ++j) p[std::size_t(zone.node({i, j, k}))] = 3;
+    for (int j = 0; j < zone.extent[1]; ++j) p[zone.node({i, j, k})] = 3;
   return out;
 }
 
@@ -290,8 +288,7 @@ TEST(ShockCells, LayersGrowAcrossPeriodicSides) {
   for (Index k = 0; k < nk; ++k)
     for (Index j = 0; j < nj; ++j)
       for (Index i = 0; i < ni; ++i)
-        EXPECT_EQ(cells[std::size_t(i + ni * (j + nj * k))] != 0, i >= 3 && i <= 6 && (k <= 2 || k == nk - 1))
-            << i << k;
+        EXPECT_EQ(cells[i + ni * (j + nj * k)] != 0, i >= 3 && i <= 6 && (k <= 2 || k == nk - 1)) << i << k;
 }
 
 TEST(ShockCells, WhereNoneIsFoundTheThresholdThatIsNamedWouldDo) {

@@ -100,8 +100,7 @@ TEST(Png, HoldsEveryPixelOfAnyPicture) {
     Picture picture(width, height);
     for (int p = 0; p < width * height; ++p)
       for (std::size_t c = 0; c < 4; ++c)
-        picture.rgba[4 * std::size_t(p) + c] =
-            palette[std::size_t(p < colours ? p : int(random() % unsigned(colours)))][c];
+        picture.rgba[4 * std::size_t(p) + c] = palette[p < colours ? p : int(random() % unsigned(colours))][c];
     EXPECT_EQ(decoded(png_bytes(picture), width, height), picture.rgba) << width << " x " << height;
   }
 }

@@ -30,11 +30,11 @@ TEST(BlockGraph, EveryBlockIsInOneChainAndHasItsCells) {
     std::vector<int> chains(graph.blocks.size(), 0);
     for (auto const& block : graph.blocks) cells += block.cells;
     for (auto const& chain : graph.chains)
-      for (int const b : chain.blocks) ++chains[std::size_t(b)];
+      for (int const b : chain.blocks) ++chains[b];
     EXPECT_EQ(cells, mesh.n_cells()) << mesh.source;
     EXPECT_EQ(chains, std::vector<int>(graph.blocks.size(), 1)) << mesh.source;
     for (std::size_t c = 0; c < graph.chains.size(); ++c)
-      for (int const b : graph.chains[c].blocks) EXPECT_EQ(graph.blocks[std::size_t(b)].chain, int(c));
+      for (int const b : graph.chains[c].blocks) EXPECT_EQ(graph.blocks[b].chain, int(c));
   }
 }
 
@@ -61,8 +61,8 @@ TEST(BlockGraph, AStarIsARing) {
   Index faces = 0;
   for (auto const& face : graph.interfaces) {
     EXPECT_FALSE(face.periodic);
-    ++degree[std::size_t(face.a)];
-    ++degree[std::size_t(face.b)];
+    ++degree[face.a];
+    ++degree[face.b];
     faces += face.faces;
   }
   EXPECT_EQ(degree, std::vector<int>(5, 2));
@@ -90,8 +90,8 @@ Seen seen(BlockGraph const& graph) {
   Seen out;
   for (auto const& face : graph.interfaces) {
     auto const key = [&](int b) {
-      auto const& block = graph.blocks[std::size_t(b)];
-      return 1000 * block.cells + graph.chains[std::size_t(block.chain)].stage;
+      auto const& block = graph.blocks[b];
+      return 1000 * block.cells + graph.chains[block.chain].stage;
     };
     auto const [a, b] = std::minmax({key(face.a), key(face.b)});
     out.emplace_back(a, b, face.periodic, face.faces);

@@ -322,8 +322,7 @@ TEST(CellRow, RelativeDisplacementsAgreeWithThePlainReference) {
         EXPECT_NEAR(relative.largest[n], expected, 1e-9 * expected)
             << shape.name;  // differences of coordinates up to 1e3
         auto const along = test::reference_relative_displacements(from, to);
-        for (int d = 0; d < 3; ++d)
-          EXPECT_NEAR(relative.along[d][n], along[std::size_t(d)], 1e-9 * expected) << shape.name;
+        for (int d = 0; d < 3; ++d) EXPECT_NEAR(relative.along[d][n], along[d], 1e-9 * expected) << shape.name;
       }
     }
 }

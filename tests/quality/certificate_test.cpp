@@ -218,17 +218,17 @@ TEST(JacobianBounds, RowsMarkTheCellsWhoseCoefficientsAreNotAllPositive) {
         z.push_back(0.01 * (n / (count + 1) / 2 + amplitude * off(random)));
       }
       kernels::CellRow const row{x.data(), y.data(), z.data(), count + 1, 2 * (count + 1), count, 1};
-      std::vector<double> mark(std::size_t(count), -1), by_one(std::size_t(count), -1);
+      std::vector<double> mark(count, -1), by_one(std::size_t(count), -1);
       kernels::row_jacobian_signs<kernels::native_lanes>(row, mark.data());
       kernels::row_jacobian_signs<1>(row, by_one.data());
       EXPECT_EQ(mark, by_one);
       for (int n = 0; n < count; ++n) {
         auto const floor = kernels::jacobian_floor(row.edges<double>(n), 1.0);
         doubtful_floor += floor.least > floor.arithmetic ? 0 : 1;
-        if (mark[std::size_t(n)] == 0) {
+        if (mark[n] == 0) {
           EXPECT_EQ(kernels::jacobian_sign(row.cell(n), 1), JacobianSign::positive);
         }
-        (mark[std::size_t(n)] == 0 ? clear : marks)++;
+        (mark[n] == 0 ? clear : marks)++;
       }
       x[0] = std::numeric_limits<double>::quiet_NaN();
       kernels::row_jacobian_signs<kernels::native_lanes>(row, mark.data());
@@ -257,7 +257,7 @@ TEST(Certificate, CountsEveryCellAsTheFunctionForOneCellDoes) {
     int first_zone = -1;
     Index3 first{};
     for (int z = 0; z < 2; ++z) {
-      Zone const& zone = mesh.zones[std::size_t(z)];
+      Zone const& zone = mesh.zones[z];
       for (int k = 0; k + 1 < zone.extent[2]; ++k)
         for (int j = 0; j + 1 < zone.extent[1]; ++j)
           for (int i = 0; i + 1 < zone.extent[0]; ++i, ++cells) {

@@ -38,14 +38,14 @@ struct PlainCell {
 
   [[nodiscard]] std::set<Key> face(int f) const {
     std::set<Key> out;
-    for (int const n : test::face_corners[std::size_t(f)]) out.insert(key(corner[std::size_t(n)]));
+    for (int const n : test::face_corners[f]) out.insert(key(corner[n]));
     return out;
   }
   /// Length of the edge that leaves the face from one of its points.
   [[nodiscard]] double length_off(std::set<Key> const& face, Key const& from) const {
     for (auto const& e : test::edge_corners)
       for (int side = 0; side < 2; ++side) {
-        Vec3 const &p = corner[std::size_t(e[side])], &q = corner[std::size_t(e[1 - side])];
+        Vec3 const &p = corner[e[side]], &q = corner[e[1 - side]];
         if (key(p) == from && face.count(key(q)) == 0) return distance(p, q);
       }
     ADD_FAILURE() << "no edge leaves the face";
@@ -55,17 +55,16 @@ struct PlainCell {
   [[nodiscard]] double area_off(std::set<Key> const& face, Key const& p, Key const& q) const {
     for (auto const& f : test::face_corners) {
       std::set<Key> points;
-      for (int const n : f) points.insert(key(corner[std::size_t(n)]));
+      for (int const n : f) points.insert(key(corner[n]));
       if (points == face || points.count(p) == 0 || points.count(q) == 0) continue;
-      return area(corner[std::size_t(f[0])], corner[std::size_t(f[1])], corner[std::size_t(f[2])],
-                  corner[std::size_t(f[3])]);
+      return area(corner[f[0]], corner[f[1]], corner[f[2]], corner[f[3]]);
     }
     ADD_FAILURE() << "no face has that edge";
     return 0;
   }
   [[nodiscard]] bool is_edge(Key const& p, Key const& q) const {
     return std::any_of(test::edge_corners.begin(), test::edge_corners.end(), [&](auto const& e) {
-      Key const a = key(corner[std::size_t(e[0])]), b = key(corner[std::size_t(e[1])]);
+      Key const a = key(corner[e[0]]), b = key(corner[e[1]]);
       return (a == p && b == q) || (a == q && b == p);
     });
   }
@@ -176,9 +175,9 @@ TEST(LineRatios, AreUnboundedWhereANodeIsNotFinite) {
 std::vector<NamedCells> zones_as_regions(Mesh const& mesh) {
   std::vector<NamedCells> out;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
-    Index3 cells = mesh.zones[std::size_t(z)].extent;
+    Index3 cells = mesh.zones[z].extent;
     for (int& n : cells) --n;
-    out.push_back({mesh.zones[std::size_t(z)].name, {{z, {{0, 0, 0}, cells}}}});
+    out.push_back({mesh.zones[z].name, {{z, {{0, 0, 0}, cells}}}});
   }
   return out;
 }
@@ -197,7 +196,7 @@ TEST(RelativeDisplacement, HasAValuePerIndexDirectionOfEachZone) {
     ASSERT_EQ(report.regions.size(), 2U);
     double const along[3] = {0.25, 0, 0.5};
     for (int a = 0; a < 3; ++a) {
-      int const second = orientation.axis[std::size_t(a)];
+      int const second = orientation.axis[a];
       for (auto const& s : {report.regions[0].quality[relative_displacement_along(a)],
                             report.regions[1].quality[relative_displacement_along(second)]}) {
         EXPECT_NEAR(s.max, along[a], 1e-13);
@@ -265,12 +264,12 @@ TEST(Regions, AreMeasuredByThemselves) {
       double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
       Index cells = 0;
       for (CellBox const& box : input.regions[r].boxes) {
-        Index3 const n = mesh.zones[std::size_t(box.zone)].extent;
+        Index3 const n = mesh.zones[box.zone].extent;
         for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
           for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
             for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i, ++cells) {
-              double const v = fields[m](
-                  std::size_t(first[std::size_t(box.zone)] + i + Index(n[0] - 1) * (j + Index(n[1] - 1) * k)));
+              double const v =
+                  fields[m](std::size_t(first[box.zone] + i + Index(n[0] - 1) * (j + Index(n[1] - 1) * k)));
               low = std::min(low, v);
               high = std::max(high, v);
               sum += v;

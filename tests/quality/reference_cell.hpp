@@ -109,7 +109,7 @@ inline std::array<double, 3> reference_relative_displacements(Corners const& bef
       length += distance(before[p], before[q]) / 4;
       difference = std::max(difference, norm((after[p] - before[p]) - (after[q] - before[q])));
     }
-    out[std::size_t(d)] = difference / length;
+    out[d] = difference / length;
   }
   return out;
 }

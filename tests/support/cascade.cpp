@@ -25,7 +25,7 @@ Mesh cascade(double radius) {
     double const half = s > 0 && s < 1 ? 0.2 * s * (1 - s) : 0;
     return place(x, h, camber + half + w * (cascade_pitch - 2 * half));
   });
-  IndexRange const all = whole(build.mesh().zones[std::size_t(zone)]);
+  IndexRange const all = whole(build.mesh().zones[zone]);
   build.patch("inlet", PatchKind::inflow, zone, 0, 0);
   build.patch("outlet", PatchKind::outflow, zone, 0, 1);
   build.patch("hub", PatchKind::wall, zone, 1, 0);

@@ -36,7 +36,7 @@ class Copier {
   void add_zone(std::string const& name, std::vector<Index> const& elements) {
     auto& number = numbers.emplace_back(std::size_t(from_.n_nodes()), -1);
     for (Index const e : elements)
-      for (Index32 const n : from_.elements.nodes[e]) number[std::size_t(n)] = 0;
+      for (Index32 const n : from_.elements.nodes[e]) number[n] = 0;
     Index32 next = Index32(points_.size());
     Index32 const first = next;
     for (std::size_t n = 0; n < number.size(); ++n)
@@ -47,8 +47,8 @@ class Copier {
     out.add_zone(name, next - first);
     for (Index const e : elements) {
       std::vector<Index32> nodes;
-      for (Index32 const n : from_.elements.nodes[e]) nodes.push_back(number[std::size_t(n)]);
-      out.add_element(from_.elements.type[std::size_t(e)], nodes);
+      for (Index32 const n : from_.elements.nodes[e]) nodes.push_back(number[n]);
+      out.add_element(from_.elements.type[e], nodes);
     }
     for (auto const& patch : from_.patches) {
       Patch mine = patch;
@@ -57,7 +57,7 @@ class Copier {
       for (Index f = 0; f < patch.faces.size(); ++f) {
         std::vector<Index32> face;
         for (Index32 const n : patch.faces[f])
-          if (number[std::size_t(n)] >= 0) face.push_back(number[std::size_t(n)]);
+          if (number[n] >= 0) face.push_back(number[n]);
         if (face.size() == patch.faces[f].size()) mine.faces.add(face);
       }
       if (mine.faces.size() > 0) out.patches.push_back(std::move(mine));
@@ -95,7 +95,7 @@ Mesh part_of(Mesh const& mesh, std::function<bool(Vec3 const&)> const& keep, std
   patch.bc_type = kind == PatchKind::wall ? "BCWall" : kind == PatchKind::symmetry ? "BCSymmetryPlane" : "BCFarfield";
   patch.zone = 0;
   for (Index f = 0; f < topology.boundary.size(); ++f)
-    if (face_patches.patch[std::size_t(f)] < 0) patch.faces.add(topology.boundary.nodes[f]);
+    if (face_patches.patch[f] < 0) patch.faces.add(topology.boundary.nodes[f]);
   if (patch.faces.size() > 0) out.patches.push_back(std::move(patch));
   return out;
 }
@@ -113,7 +113,7 @@ Mesh in_two_zones(Mesh const& mesh, std::function<bool(Vec3 const&)> const& firs
     connection.zone = zone;
     connection.donor_zone = 1 - zone;
     for (std::size_t n = 0; n < copier.numbers[0].size(); ++n) {
-      Index32 const a = copier.numbers[std::size_t(zone)][n], b = copier.numbers[std::size_t(1 - zone)][n];
+      Index32 const a = copier.numbers[zone][n], b = copier.numbers[1 - zone][n];
       if (a < 0 || b < 0) continue;
       connection.nodes.push_back(a);
       connection.donor_nodes.push_back(b);
@@ -129,7 +129,7 @@ Mesh second_order(Mesh const& mesh, bool all_nodes, std::function<Vec3(Vec3 cons
   for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
   std::vector<std::vector<Index32>> nodes;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    ElementType const type = mesh.elements.type[std::size_t(e)];
+    ElementType const type = mesh.elements.type[e];
     auto const corners = mesh.elements.corners(e);
     auto& list = nodes.emplace_back(corners.begin(), corners.end());
     auto const add_amid = [&](std::vector<Index32> around) {
@@ -137,13 +137,13 @@ Mesh second_order(Mesh const& mesh, bool all_nodes, std::function<Vec3(Vec3 cons
       auto const [at, fresh] = middle.try_emplace(around, Index32(points.size()));
       if (fresh) {
         Vec3 sum;
-        for (Index32 const n : around) sum += points[std::size_t(n)];
+        for (Index32 const n : around) sum += points[n];
         points.push_back((1.0 / double(around.size())) * sum);
       }
       list.push_back(at->second);
     };
     for (int k = 0; k < n_edges(type); ++k)
-      add_amid({corners[std::size_t(edge_corner(type, k, 0))], corners[std::size_t(edge_corner(type, k, 1))]});
+      add_amid({corners[edge_corner(type, k, 0)], corners[edge_corner(type, k, 1)]});
     if (!all_nodes) continue;
     if (is_surface(type)) {
       if (type == ElementType::quadrilateral) add_amid({corners.begin(), corners.end()});
@@ -160,8 +160,7 @@ Mesh second_order(Mesh const& mesh, bool all_nodes, std::function<Vec3(Vec3 cons
   out.source = mesh.source;
   out.dimension = mesh.dimension;
   out.add_zone("zone", Index(points.size()));
-  for (Index e = 0; e < mesh.n_elements(); ++e)
-    out.add_element(mesh.elements.type[std::size_t(e)], nodes[std::size_t(e)]);
+  for (Index e = 0; e < mesh.n_elements(); ++e) out.add_element(mesh.elements.type[e], nodes[e]);
   out.patches = mesh.patches;
   out.coordinates = Coordinates(Index(points.size()));
   for (std::size_t n = 0; n < points.size(); ++n) out.coordinates.set(Index(n), to ? to(points[n]) : points[n]);
@@ -187,15 +186,15 @@ Mesh as_polyhedra(Mesh const& mesh) {
 
 Mesh with_joined_elements(Mesh const& mesh, int side) {
   UnstructuredTopology const topology = make_topology(mesh);
-  std::vector<Index> partner(std::size_t(mesh.n_elements()), -1);
+  std::vector<Index> partner(mesh.n_elements(), -1);
   int pairs = 0;
   for (Zone const& zone : mesh.zones)
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
-      Index const other = topology.sides.of(e)[std::size_t(side)];
+      Index const other = topology.sides.of(e)[side];
       bool const here = other >= zone.first_element && other < zone.first_element + zone.n_elements;
-      if (!here || partner[std::size_t(e)] >= 0 || partner[std::size_t(other)] >= 0 || ++pairs % 3 == 0) continue;
-      partner[std::size_t(e)] = other;
-      partner[std::size_t(other)] = e;
+      if (!here || partner[e] >= 0 || partner[other] >= 0 || ++pairs % 3 == 0) continue;
+      partner[e] = other;
+      partner[other] = e;
     }
   Mesh out = mesh;
   out.zones.clear();
@@ -207,13 +206,13 @@ Mesh with_joined_elements(Mesh const& mesh, int side) {
     out.zones.back().first_element = out.n_elements();
     out.zones.back().n_elements = 0;
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
-      Index const other = partner[std::size_t(e)];
-      if (other < 0) out.add_element(mesh.elements.type[std::size_t(e)], mesh.elements.nodes[e]);
+      Index const other = partner[e];
+      if (other < 0) out.add_element(mesh.elements.type[e], mesh.elements.nodes[e]);
       if (other < e) continue;
       std::set<Index32> nodes;
       for (Index const part : {e, other})
         for (int s = 0; s < n_sides(mesh, part); ++s) {
-          if (topology.sides.of(part)[std::size_t(s)] == (part == e ? other : e)) continue;
+          if (topology.sides.of(part)[s] == (part == e ? other : e)) continue;
           auto const face = side_nodes(mesh, part, s, room);
           out.polyhedra.faces.add(face);
           nodes.insert(face.begin(), face.end());
@@ -256,8 +255,7 @@ Mesh airfoil(int around, int layers, double first, double growth, double far) {
         0.6 * (0.2969 * std::sqrt(x) - 0.126 * x - 0.3516 * x * x + 0.2843 * x * x * x - 0.1036 * x * x * x * x);
     Vec3 const wall{x, std::sin(angle) >= 0 ? half : -half, 0};
     Vec3 const outer{0.5 + far * std::cos(angle), far * std::sin(angle), 0};
-    for (int j = 0; j < rows; ++j)
-      mesh.coordinates.set(node(i, j), wall + (heights[std::size_t(j)] / far) * (outer - wall));
+    for (int j = 0; j < rows; ++j) mesh.coordinates.set(node(i, j), wall + (heights[j] / far) * (outer - wall));
   }
   for (int j = 0; j + 1 < rows; ++j)
     for (int i = 0; i < around; ++i) {

@@ -18,7 +18,7 @@ inline PeriodicMatch periodic_match(Mesh const& mesh, std::map<Index, Vec3> cons
   Boundary const boundary(mesh);
   PeriodicMatch out;
   for (int c = 0; c < int(mesh.interfaces.size()); ++c) {
-    if (!mesh.interfaces[std::size_t(c)].periodic) continue;
+    if (!mesh.interfaces[c].periodic) continue;
     Mat3 const turn = boundary.transform(c).rotation;
     for (auto const& [own, donor] : boundary.pairs(c)) {
       if (!u.contains(own)) continue;

@@ -96,7 +96,7 @@ IndexRange part(IndexRange range, int first, int last) {
 
 /// What a block has whose i goes with the flow; `span` and `pitch`: its other directions.
 Mesh with_boundaries(MeshBuilder& build, int zone, int span, int pitch, Periodic const& sides, PatchKind ends) {
-  IndexRange const all = whole(build.mesh().zones[std::size_t(zone)]);
+  IndexRange const all = whole(build.mesh().zones[zone]);
   build.patch("inlet", PatchKind::inflow, zone, 0, 0);
   build.patch("outlet", PatchKind::outflow, zone, 0, 1);
   build.patch("hub", ends, zone, span, 0);

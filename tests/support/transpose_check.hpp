@@ -24,7 +24,7 @@ inline Coordinates random_vectors(unsigned seed, Index n) {
 }
 inline Coordinates coordinates_of(std::vector<Vec3> const& values) {
   Coordinates c(Index(values.size()));
-  for (Index k = 0; k < c.size(); ++k) c.set(k, values[std::size_t(k)]);
+  for (Index k = 0; k < c.size(); ++k) c.set(k, values[k]);
   return c;
 }
 

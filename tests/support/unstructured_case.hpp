@@ -62,7 +62,7 @@ struct UnstructuredCase {
   /// Nodes of a patch, those of its faces where it lists faces.
   [[nodiscard]] std::vector<Index32> nodes_of(std::string const& name) const {
     int const p = patch(name);
-    return p < 0 ? std::vector<Index32>() : patch_nodes(mesh.patches[std::size_t(p)]);
+    return p < 0 ? std::vector<Index32>() : patch_nodes(mesh.patches[p]);
   }
   /// Largest deviation of known nodes from what their rules ask for: 0 bit for bit.
   [[nodiscard]] double largest_miss(UnstructuredMorphed const& m) const {

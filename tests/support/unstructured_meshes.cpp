@@ -12,8 +12,7 @@ namespace {
 /// Corner numbers of a cell as i + 2 j + 4 k.
 std::array<Index32, 8> cell_nodes(Zone const& zone, Index3 const& c) {
   std::array<Index32, 8> out{};
-  for (int n = 0; n < 8; ++n)
-    out[std::size_t(n)] = Index32(zone.node({c[0] + (n & 1), c[1] + (n >> 1 & 1), c[2] + (n >> 2)}));
+  for (int n = 0; n < 8; ++n) out[n] = Index32(zone.node({c[0] + (n & 1), c[1] + (n >> 1 & 1), c[2] + (n >> 2)}));
   return out;
 }
 
@@ -73,7 +72,7 @@ Mesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
     out.add_zone(zone.name, zone.size());
     each_cell_of(zone, [&](Index3 const& c) {
       auto const n = cell_nodes(zone, c);
-      auto const at = [&](int k) { return n[std::size_t(k)]; };
+      auto const at = [&](int k) { return n[k]; };
       if (c[2] < prism_layers) {
         out.add_element(ElementType::prism, std::array{at(0), at(1), at(3), at(4), at(5), at(7)});
         out.add_element(ElementType::prism, std::array{at(0), at(3), at(2), at(4), at(7), at(6)});
@@ -90,7 +89,7 @@ Mesh to_prisms_and_tetrahedra(Mesh const& mesh, int prism_layers) {
   }
   for (auto const& patch : mesh.patches) {
     auto faces = start(patch);
-    each_quad(mesh.zones[std::size_t(patch.zone)], patch.range, [&](int axis, std::array<Index32, 4> const& q, int k) {
+    each_quad(mesh.zones[patch.zone], patch.range, [&](int axis, std::array<Index32, 4> const& q, int k) {
       if (axis != 2 && k < prism_layers) return faces.faces.add(q);
       faces.faces.add(std::array{q[0], q[1], q[2]});
       faces.faces.add(std::array{q[0], q[2], q[3]});

@@ -109,7 +109,7 @@ surface = "revolution"
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
-          Index const n = before.zones[std::size_t(patch.zone)].node({i, j, k});
+          Index const n = before.zones[patch.zone].node({i, j, k});
           Vec3 const p = before.coordinates[n], q = after.coordinates[n];
           double const c = std::cos(0.01), s = std::sin(0.01);
           // The profile of the hub is a function of x; rows that turn as a whole keep it node by node.

@@ -146,8 +146,7 @@ TEST_F(SequenceRun, OtherRecipesAreTriedOnTheWorstStepAndTheirKeysGiveTheSameMes
   for (int step = 1; step <= 3; ++step) best.push_back(mesh(fmt::format("out_{}.cgns", step)));
   auto const [again, same] = run(test::with_keys(text, kept));
   ASSERT_EQ(again.status, out.status) << again.err;
-  for (int step = 1; step <= 3; ++step)
-    expect_same(mesh(fmt::format("out_{}.cgns", step)), best[std::size_t(step - 1)]);
+  for (int step = 1; step <= 3; ++step) expect_same(mesh(fmt::format("out_{}.cgns", step)), best[step - 1]);
 }
 
 TEST_F(SequenceRun, AFrozenGuardMendsEveryStepByOneLinearMap) {

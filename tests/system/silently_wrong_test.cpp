@@ -44,7 +44,7 @@ bool has_shortfall(nlohmann::json const& report, std::string const& severity, st
 /// Of a plane patch of a box along the axes.
 Vec3 normal_of(Mesh const& mesh, Patch const& patch) {
   Box box;
-  Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+  Zone const& zone = mesh.zones[patch.zone];
   auto const add = [&](Index n) { box.include(mesh.coordinates[n]); };
   if (zone.is_block())
     for_each_node(zone, patch.range, add);
@@ -107,7 +107,7 @@ TEST_F(SilentlyWrong, NodesBeyondThePointsOfAFileAreAWarningHoweverQuietTheRun) 
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i)
-            blade.push_back(mesh.coordinates[mesh.zones[std::size_t(patch.zone)].node({i, j, k})]);
+            blade.push_back(mesh.coordinates[mesh.zones[patch.zone].node({i, j, k})]);
   ASSERT_FALSE(blade.empty());
   auto const radius = [](Vec3 const& p) { return std::hypot(p.y, p.z); };
   double bottom = radius(blade.front());

@@ -132,7 +132,7 @@ TEST_F(UnstructuredSequence, EveryStepIsTheMeshThatItsDisplacementAloneGives) {
     ASSERT_EQ(gridmorph("morph single.toml").status, 0);
     auto const alone = coordinates("single.su2"), together = coordinates(fmt::format("out_{}.su2", step + 1));
     for (Index n = 0; n < alone.size(); ++n) EXPECT_LT(distance(alone[n], together[n]), 1e-6) << step << " " << n;
-    double const largest = json["sequence"]["steps"][std::size_t(step)]["largest_displacement"];
+    double const largest = json["sequence"]["steps"][step]["largest_displacement"];
     // On the walls 0.15; what turns and shears with the body further out moves further.
     EXPECT_GT(largest, std::abs(factor) * 0.14) << step;
     EXPECT_LT(largest, std::abs(factor) * 0.30) << step;

@@ -28,39 +28,39 @@ Mesh shuffled(Mesh const& mesh, unsigned seed) {
   std::vector<Orientation> turns;
   for (Orientation const& o : all_orientations())
     if (o.determinant() > 0) turns.push_back(o);
-  std::vector<Index32> to(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> to(mesh.n_nodes());
   Mesh out = mesh;
   out.coordinates = Coordinates(mesh.n_nodes());
   out.elements.nodes = {};
   for (Zone const& zone : mesh.zones) {
     auto const first = to.begin() + std::ptrdiff_t(zone.first_node);
-    std::vector<Index32> nodes(std::size_t(zone.size()));
+    std::vector<Index32> nodes(zone.size());
     std::iota(nodes.begin(), nodes.end(), Index32(zone.first_node));
     random.shuffle(nodes);
     std::copy(nodes.begin(), nodes.end(), first);
   }
-  for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(to[std::size_t(n)], mesh.coordinates[n]);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(to[n], mesh.coordinates[n]);
   for (Zone const& zone : mesh.zones) {
-    std::vector<Index32> elements(std::size_t(zone.n_elements));
+    std::vector<Index32> elements(zone.n_elements);
     std::iota(elements.begin(), elements.end(), Index32(zone.first_element));
     random.shuffle(elements);
     for (Index32 const e : elements) {
-      Orientation const& turn = turns[std::size_t(random.below(int(turns.size())))];
+      Orientation const& turn = turns[random.below(int(turns.size()))];
       std::array<Index32, 8> corners{};
       for (int c = 0; c < 8; ++c) {
-        int const p = place[std::size_t(c)];
+        int const p = place[c];
         Index3 const step = turn.apply({2 * (p & 1) - 1, (p & 2) - 1, (p & 4) / 2 - 1});
         int const q = (step[0] > 0 ? 1 : 0) + (step[1] > 0 ? 2 : 0) + (step[2] > 0 ? 4 : 0);
-        corners[std::size_t(c)] = to[std::size_t(mesh.elements.nodes[e][std::size_t(place[std::size_t(q)])])];
+        corners[c] = to[mesh.elements.nodes[e][place[q]]];
       }
       out.elements.nodes.add(corners);
     }
   }
   for (Patch& patch : out.patches)
-    for (Index32& n : patch.faces.item) n = to[std::size_t(n)];
+    for (Index32& n : patch.faces.item) n = to[n];
   for (Connection& c : out.connections)
     for (auto* list : {&c.nodes, &c.donor_nodes})
-      for (Index32& n : *list) n = to[std::size_t(n)];
+      for (Index32& n : *list) n = to[n];
   return out;
 }
 
@@ -107,10 +107,8 @@ void expect_blocks_of(Mesh const& elements, FoundBlocks const& found) {
       for (int j = 0; j + 1 < zone.extent[1]; ++j)
         for (int i = 0; i + 1 < zone.extent[0]; ++i, ++cell) {
           std::multiset<Index32> own, of_element;
-          for (int c = 0; c < 8; ++c)
-            own.insert(found.node[std::size_t(zone.node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)}))]);
-          for (Index32 const n : elements.elements.corners(found.element[cell]))
-            of_element.insert(representative[std::size_t(n)]);
+          for (int c = 0; c < 8; ++c) own.insert(found.node[zone.node({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)})]);
+          for (Index32 const n : elements.elements.corners(found.element[cell])) of_element.insert(representative[n]);
           ASSERT_EQ(own, of_element) << "cell " << cell;
         }
   EXPECT_EQ(flaws(blocks, 1e-6), std::vector<std::string>());
@@ -182,7 +180,7 @@ TEST(FoundBlocks, InThePlaneHaveASecondPlane) {
         for (int i = 0; i + 1 < zone.extent[0]; ++i, ++cell)
           for (int k = 0; k < 2; ++k) {
             std::multiset<Index32> own, of_element;
-            for (int c = 0; c < 4; ++c) own.insert(found.node[std::size_t(zone.node({i + c % 2, j + c / 2, k}))]);
+            for (int c = 0; c < 4; ++c) own.insert(found.node[zone.node({i + c % 2, j + c / 2, k})]);
             for (Index32 const n : flat.elements.corners(found.element[cell])) of_element.insert(n);
             ASSERT_EQ(own, of_element) << "cell " << cell;
           }

@@ -103,7 +103,7 @@ Mesh sector_with_a_strip(double pitch, double pitch_of_the_strip, double height,
   };
   for (auto const& [z, angle] : {std::pair(zone("high", 1, 2, pitch), pitch),
                                  std::pair(zone("strip", 2, 2 + height, pitch_of_the_strip), pitch_of_the_strip)}) {
-    IndexRange const all = whole(build.mesh().zones[std::size_t(z)]);
+    IndexRange const all = whole(build.mesh().zones[z]);
     // One is declared there, the other one back; both as the pitch of the first.
     bool const back = z == 1;
     build.join(z, face_of(all, 2, back ? 1 : 0), z, face_of(all, 2, back ? 0 : 1), {},

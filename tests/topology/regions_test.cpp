@@ -16,11 +16,11 @@ namespace {
 
 /// How many of the ranges hold each cell.
 std::vector<int> held_by(Index3 const& cells, std::vector<IndexRange> const& boxes) {
-  std::vector<int> out(std::size_t(cells[0] * cells[1] * cells[2]), 0);
+  std::vector<int> out(cells[0] * cells[1] * cells[2], 0);
   for (IndexRange const& box : boxes)
     for (int k = box.begin[2]; k + 1 < box.end[2]; ++k)
       for (int j = box.begin[1]; j + 1 < box.end[1]; ++j)
-        for (int i = box.begin[0]; i + 1 < box.end[0]; ++i) ++out[std::size_t(i + cells[0] * (j + cells[1] * k))];
+        for (int i = box.begin[0]; i + 1 < box.end[0]; ++i) ++out[i + cells[0] * (j + cells[1] * k)];
   return out;
 }
 
@@ -28,8 +28,8 @@ TEST(Regions, EveryCellInsideIsInExactlyOneBoxAndNoBoxCanShrink) {
   Index3 const cells{9, 8, 7};
   Random random(4);
   for (int share = 1; share <= 64; share *= 4) {
-    std::vector<char> inside(std::size_t(cells[0] * cells[1] * cells[2]), 0);
-    for (int n = 0; n < share; ++n) inside[std::size_t(random.below(int(inside.size())))] = 1;
+    std::vector<char> inside(cells[0] * cells[1] * cells[2], 0);
+    for (int n = 0; n < share; ++n) inside[random.below(int(inside.size()))] = 1;
     std::vector<IndexRange> const boxes = boxes_of_cells(cells, inside);
     std::vector<int> const held = held_by(cells, boxes);
     for (std::size_t c = 0; c < inside.size(); ++c) {

@@ -41,7 +41,7 @@ Planned planned(Bodies const& bodies, WrapOptions const& options, Vec3 const& lo
 std::vector<Vec3> boundary_of(Planned const& p, VectorField const& motion) {
   std::vector<Vec3> boundary(p.prepared.plan().boundary_nodes.size());
   for (std::size_t n = 0; n < p.nodes.position.size(); ++n)
-    boundary[std::size_t(p.nodes.boundary_node[n])] = motion(p.nodes.position[n]);
+    boundary[p.nodes.boundary_node[n]] = motion(p.nodes.position[n]);
   return boundary;
 }
 
@@ -200,7 +200,7 @@ TEST(Background, TakesTheWrapsDisplacementExactlyAndNoneOnTheOuterBox) {
     for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
       for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
         for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
-          Index const n = mesh.zones[std::size_t(patch.zone)].node({i, j, k});
+          Index const n = mesh.zones[patch.zone].node({i, j, k});
           Vec3 const expected = patch.families.front() == "wrap" ? field(mesh.coordinates[n]) : Vec3{};
           ASSERT_TRUE(same_bits(m.displacement[n], expected));
           on_wrap += patch.families.front() == "wrap" ? 1 : 0;
@@ -220,7 +220,7 @@ TEST(Background, ListsEachPointOfTheWrapOnce) {
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
-            Vec3 const x = mesh.coordinates[mesh.zones[std::size_t(patch.zone)].node({i, j, k})];
+            Vec3 const x = mesh.coordinates[mesh.zones[patch.zone].node({i, j, k})];
             ++expected[{x.x, x.y, x.z}];
           }
   EXPECT_EQ(seen.size(), expected.size());
@@ -252,8 +252,7 @@ std::vector<Vec3> gathered(InterpolationOperator const& rows, Coordinates const&
   std::vector<Vec3> out;
   for (Index r = 0; r < rows.size(); ++r) {
     Vec3 sum;
-    for (Index k = rows.first[std::size_t(r)]; k < rows.first[std::size_t(r) + 1]; ++k)
-      sum += double(rows.weight[std::size_t(k)]) * u[rows.item[std::size_t(k)]];
+    for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) sum += double(rows.weight[k]) * u[rows.item[k]];
     out.push_back(sum);
   }
   return out;
@@ -300,9 +299,9 @@ TEST(LatticeRows, NameOneNodeForAPointOnANode) {
   FarRows const far = lattice_rows({}, p.background, mesh.coordinates, nodes);
   EXPECT_EQ(far.n_outside, 0) << "nodes of the wrap's surface are not inside it";
   for (Index r = 0; r < far.rows.size(); ++r) {
-    ASSERT_EQ(far.rows.first[std::size_t(r) + 1] - far.rows.first[std::size_t(r)], 1);
-    Index32 const item = far.rows.item[std::size_t(far.rows.first[std::size_t(r)])];
-    ASSERT_EQ(norm(mesh.coordinates[item] - mesh.coordinates[nodes[std::size_t(r)]]), 0);
+    ASSERT_EQ(far.rows.first[r + 1] - far.rows.first[r], 1);
+    Index32 const item = far.rows.item[far.rows.first[r]];
+    ASSERT_EQ(norm(mesh.coordinates[item] - mesh.coordinates[nodes[r]]), 0);
   }
 }
 

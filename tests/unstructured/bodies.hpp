@@ -14,12 +14,10 @@ class Bodies {
   void box(Vec3 const& low, Vec3 const& high) {
     std::array<Index32, 8> corner{};
     for (int n = 0; n < 8; ++n)
-      corner[std::size_t(n)] =
-          add({(n & 1) != 0 ? high.x : low.x, (n & 2) != 0 ? high.y : low.y, (n & 4) != 0 ? high.z : low.z});
+      corner[n] = add({(n & 1) != 0 ? high.x : low.x, (n & 2) != 0 ? high.y : low.y, (n & 4) != 0 ? high.z : low.z});
     constexpr int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
     for (auto const& f : face) {
-      std::array<Index32, 4> const nodes{corner[std::size_t(f[0])], corner[std::size_t(f[1])],
-                                         corner[std::size_t(f[2])], corner[std::size_t(f[3])]};
+      std::array<Index32, 4> const nodes{corner[f[0]], corner[f[1]], corner[f[2]], corner[f[3]]};
       walls.front().add(nodes);
     }
   }

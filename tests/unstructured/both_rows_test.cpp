@@ -124,8 +124,8 @@ std::vector<std::map<Index, Vec3>> displacements(Boundary const& boundary, Bound
       nodes[r].insert(own.begin(), own.end());
     }
   for (AnyConnection const& c : boundary.connections())
-    if (int const r = resolved.interface[std::size_t(c.number)].rule; c.periodic && r >= 0 && r < int(n_rules))
-      for (auto const& [own, donor] : boundary.pairs(c.number)) nodes[std::size_t(r)].insert(own);
+    if (int const r = resolved.interface[c.number].rule; c.periodic && r >= 0 && r < int(n_rules))
+      for (auto const& [own, donor] : boundary.pairs(c.number)) nodes[r].insert(own);
   std::vector<std::map<Index, Vec3>> out(n_rules);
   for (std::size_t r = 0; r < n_rules; ++r) {
     if (!motion.is_explicit(int(r))) continue;
@@ -291,7 +291,7 @@ Mesh in_one_zone(Mesh const& mesh, std::vector<Index32>& number) {
   std::vector<Index32> corners;
   auto const renumbered = [&](auto const& nodes) {
     corners.clear();
-    for (Index32 const n : nodes) corners.push_back(number[std::size_t(n)]);
+    for (Index32 const n : nodes) corners.push_back(number[n]);
     return std::span<Index32 const>(corners);
   };
   for (Index e = 0; e < mesh.elements.size(); ++e)
@@ -303,15 +303,14 @@ Mesh in_one_zone(Mesh const& mesh, std::vector<Index32>& number) {
     if (fresh) {
       out.patches.push_back({family, patch.bc_type, patch.kind, {family}, 0, {}, {}, {}});
     }
-    for (Index f = 0; f < patch.faces.size(); ++f)
-      out.patches[std::size_t(at->second)].faces.add(renumbered(patch.faces[f]));
+    for (Index f = 0; f < patch.faces.size(); ++f) out.patches[at->second].faces.add(renumbered(patch.faces[f]));
   }
   for (Connection const& c : mesh.connections) {
     if (!c.periodic) continue;
     Connection own = c;
     own.zone = own.donor_zone = 0;
     for (auto* list : {&own.nodes, &own.donor_nodes})
-      for (Index32& n : *list) n = number[std::size_t(n)];
+      for (Index32& n : *list) n = number[n];
     out.connections.push_back(std::move(own));
   }
   return out;
@@ -333,7 +332,7 @@ TEST(BothRows, AreTheSameInOneZone) {
       double largest = 0, apart = 0;
       for (auto const& [n, u] : a[r]) {
         largest = std::max(largest, norm(u));
-        apart = std::max(apart, distance(u, b[r].at(number[std::size_t(n)])));
+        apart = std::max(apart, distance(u, b[r].at(number[n])));
       }
       EXPECT_LE(apart, 1e-12 * largest) << r;
     }
@@ -353,7 +352,7 @@ TEST(BothRows, GoToTheSectionsOfATarget) {
     TargetSection& section = target->sections.emplace_back();
     section.name = std::to_string(target->sections.size());
     for (std::size_t n = 0; n + 1 < row.size(); ++n) {
-      Vec3 const p = surface.points[std::size_t(row[n])];
+      Vec3 const p = surface.points[row[n]];
       section.points.push_back(p + passage_displacement(options, rotated_sections(), p));
     }
   }

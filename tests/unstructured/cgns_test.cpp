@@ -138,11 +138,11 @@ TEST_P(UnstructuredCgns, NodesOfNoElementAreLeftToTheFile) {
         EXPECT_EQ(x, x_of_step);
         Index const first = all.zones[z].first_node, middle = mesh.zones[z].size() / 2 + 1;
         EXPECT_EQ(x.front(), 1e5);
-        EXPECT_EQ(x[std::size_t(middle)], -7);
+        EXPECT_EQ(x[middle], -7);
         EXPECT_EQ(x.back(), 1);
         for (Index n = 0; n < all.zones[z].size(); ++n)
           if (n != 0 && n != middle && n + 1 != all.zones[z].size()) {
-            EXPECT_EQ(x[std::size_t(n)], wavy(all.coordinates[first + n], 0.1).x) << n;
+            EXPECT_EQ(x[n], wavy(all.coordinates[first + n], 0.1).x) << n;
           }
       }
     }
@@ -160,11 +160,11 @@ TEST_P(UnstructuredCgns, FilesOfAnOrderedMeshAreInTheOrderOfTheFile) {
       after.set(n, wavy(mesh.coordinates[n], 0.1));
       ordered_after.set(n, wavy(ordered.coordinates[n], 0.1));
       fields.nodes[0].values.push_back(double(n));
-      ordered_fields.nodes[0].values.push_back(ordered.file_order.node[std::size_t(n)]);
+      ordered_fields.nodes[0].values.push_back(ordered.file_order.node[n]);
     }
     for (Index e = 0; e < mesh.n_elements(); ++e) {
       fields.cells[0].values.push_back(double(e));
-      ordered_fields.cells[0].values.push_back(ordered.file_order.element[std::size_t(e)]);
+      ordered_fields.cells[0].values.push_back(ordered.file_order.element[e]);
     }
     auto const input = folder_.file("in.cgns"), one = folder_.file("one.cgns"), two = folder_.file("two.cgns");
     write_mesh(input, mesh, {.format = GetParam()});
@@ -218,10 +218,10 @@ TEST_P(UnstructuredCgns, ASeriesHoldsEveryStepAsTheFileNumbersNodes) {
   for (std::size_t step = 0; step < times.size(); ++step) {
     auto const bytes = payload(after.at("/Base/box/GridCoordinates_" + std::to_string(step + 1) + "/CoordinateZ"));
     ASSERT_EQ(bytes.size(), sizeof(double) * std::size_t(mesh.n_nodes()));
-    std::vector<double> z(std::size_t(mesh.n_nodes()));
+    std::vector<double> z(mesh.n_nodes());
     std::memcpy(z.data(), bytes.data(), bytes.size());
     for (Index n = 0; n < mesh.n_nodes(); ++n)
-      EXPECT_EQ(z[std::size_t(n)], mesh.coordinates.z(n) + 3 * times[step]) << step << " " << n;
+      EXPECT_EQ(z[n], mesh.coordinates.z(n) + 3 * times[step]) << step << " " << n;
   }
   EXPECT_TRUE(after.contains("/Base/box/ZoneIterativeData/GridCoordinatesPointers"));
 }
@@ -304,10 +304,10 @@ class HandMadeFile {
       std::vector<double> x;
       for (int k = 0; k < 2; ++k)
         for (int j = 0; j < 2; ++j)
-          for (int i = 0; i < 3; ++i) x.push_back(std::array{i, j, k}[std::size_t(c)]);
+          for (int i = 0; i < 3; ++i) x.push_back(std::array{i, j, k}[c]);
       static constexpr std::array names{"CoordinateX", "CoordinateY", "CoordinateZ"};
       int number = 0;
-      check(cg_coord_write(file_, base_, zone, CGNS_ENUMV(RealDouble), names[std::size_t(c)], x.data(), &number));
+      check(cg_coord_write(file_, base_, zone, CGNS_ENUMV(RealDouble), names[c], x.data(), &number));
     }
   }
   int file_ = 0, base_ = 0, zone_ = 0;
@@ -536,12 +536,12 @@ TEST(UnstructuredFiles, MiddleNodesOfConnectionsThatListCornersAloneArePaired) {
           periodic.donor_nodes.push_back(Index32(m));
         }
     mesh.connections = {periodic};
-    std::vector<char> corners(std::size_t(mesh.n_nodes()), 0);
+    std::vector<char> corners(mesh.n_nodes(), 0);
     for (Index e = 0; e < mesh.n_elements(); ++e)
-      for (Index32 const n : mesh.elements.corners(e)) corners[std::size_t(n)] = 1;
+      for (Index32 const n : mesh.elements.corners(e)) corners[n] = 1;
     auto const pairs = periodic;
     for (auto* list : {&mesh.connections[0].nodes, &mesh.connections[0].donor_nodes})
-      std::erase_if(*list, [&](Index32 n) { return corners[std::size_t(n)] == 0; });
+      std::erase_if(*list, [&](Index32 n) { return corners[n] == 0; });
     ASSERT_LT(mesh.connections[0].nodes.size(), pairs.nodes.size());
     write_mesh(folder.file("mesh.cgns"), mesh);
     Mesh const read = read_mesh(folder.file("mesh.cgns"));

@@ -20,11 +20,11 @@ struct Channel {
   Columns columns;
 
   explicit Channel(double (*height)(double x)) {
-    columns.height.assign(std::size_t(mesh.n_nodes()), 0);
+    columns.height.assign(mesh.n_nodes(), 0);
     columns.full_rise = columns.height;
     for (Index32 n = 0; n < mesh.n_nodes(); ++n) {
       Vec3 const x = mesh.coordinates[n];
-      if (x.y == 0) columns.height[std::size_t(n)] = columns.full_rise[std::size_t(n)] = height(x.x);
+      if (x.y == 0) columns.height[n] = columns.full_rise[n] = height(x.x);
       if (x.y == 0 || x.y > height(x.x)) continue;
       columns.node.push_back(n);
       columns.root.push_back(at(x.x, 0));
@@ -57,29 +57,28 @@ TEST(ColumnHeights, BoundariesAheadLeaveAGapAndBoundariesBesideDoNot) {
   auto const ahead = gaps_ahead(c.mesh.coordinates, c.columns, nearest_source(c.mesh.coordinates, c.graph, lid));
   auto const beside = gaps_ahead(c.mesh.coordinates, c.columns, nearest_source(c.mesh.coordinates, c.graph, side));
   for (double x = 0; x <= 8; ++x) {
-    EXPECT_DOUBLE_EQ(ahead[std::size_t(c.at(x, 0))], 6) << x;
-    EXPECT_EQ(beside[std::size_t(c.at(x, 0))], infinity) << x;
+    EXPECT_DOUBLE_EQ(ahead[c.at(x, 0)], 6) << x;
+    EXPECT_EQ(beside[c.at(x, 0)], infinity) << x;
   }
 }
 
 TEST(ColumnHeights, AreLevelAndWithinTheirBounds) {
   Channel const c([](double x) { return x < 4 ? 1.0 : 5.0; });
   std::vector<double> most(c.columns.height.size(), infinity);
-  most[std::size_t(c.at(7, 0))] = 2;
+  most[c.at(7, 0)] = 2;
   ColumnEnds const even = smooth_ends(c.graph, c.columns, most);
   std::vector<double> const& height = even.height;
   for (double x = 0; x <= 8; ++x) {
-    double const h = height[std::size_t(c.at(x, 0))];
+    double const h = height[c.at(x, 0)];
     EXPECT_GE(h, 1) << x;
     EXPECT_LE(h, 2) << x;  // the least of three neighbours reaches from 7 and from 3 over all of the higher part
     if (x > 0) {
-      EXPECT_LT(std::abs(h - height[std::size_t(c.at(x - 1, 0))]), 0.25) << x;
+      EXPECT_LT(std::abs(h - height[c.at(x - 1, 0)]), 0.25) << x;
     }
   }
   Columns const ends = cut(c.columns, even);
   EXPECT_LT(ends.size(), c.columns.size());
-  for (std::size_t k = 0; k < ends.node.size(); ++k)
-    EXPECT_LE(ends.above_wall[k], height[std::size_t(ends.root[k])] * (1 + 1e-8));
+  for (std::size_t k = 0; k < ends.node.size(); ++k) EXPECT_LE(ends.above_wall[k], height[ends.root[k]] * (1 + 1e-8));
 }
 
 // Of the columns at x < 2 the lengths, the rises or both are three times those of the others.
@@ -92,8 +91,8 @@ TEST(ColumnHeights, ColumnsOfLinesThatLeanAreEvenInLengthOrInRise) {
       if (!higher) c.columns.rise[k] /= 3;
     }
     for (double x = 0; x < 2; ++x) {
-      if (!longer) c.columns.height[std::size_t(c.at(x, 0))] /= 3;
-      if (!higher) c.columns.full_rise[std::size_t(c.at(x, 0))] /= 3;
+      if (!longer) c.columns.height[c.at(x, 0)] /= 3;
+      if (!higher) c.columns.full_rise[c.at(x, 0)] /= 3;
     }
     ColumnEnds const even = smooth_ends(c.graph, c.columns, std::vector<double>(c.columns.height.size(), infinity));
     bool const are_cut = longer && higher;
@@ -111,12 +110,12 @@ TEST(ColumnHeights, AreNoLongerThanTheyMayBeHoweverTheyLean) {
   Index32 const leans = c.at(4, 0);
   for (std::size_t k = 0; k < c.columns.node.size(); ++k)
     if (c.columns.root[k] == leans) c.columns.rise[k] *= 0.01;
-  c.columns.full_rise[std::size_t(leans)] *= 0.01;
+  c.columns.full_rise[leans] *= 0.01;
   std::vector<double> const most(c.columns.height.size(), infinity);
   std::vector<double> longest = most;
-  for (double x = 0; x <= 8; ++x) longest[std::size_t(c.at(x, 0))] = 2;
+  for (double x = 0; x <= 8; ++x) longest[c.at(x, 0)] = 2;
   ColumnEnds const held = smooth_ends(c.graph, c.columns, most, longest);
-  for (double x = 0; x <= 8; ++x) EXPECT_NEAR(held.height[std::size_t(c.at(x, 0))], 2, 1e-12) << x;
+  for (double x = 0; x <= 8; ++x) EXPECT_NEAR(held.height[c.at(x, 0)], 2, 1e-12) << x;
   Columns const ends = cut(c.columns, held);
   for (std::size_t k = 0; k < ends.node.size(); ++k) EXPECT_LE(ends.above_wall[k], 2 + 1e-9);
 }

@@ -43,7 +43,7 @@ struct Standing {
   }
   template <class Position>
   void move(Position const& position) {
-    for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.set(n, position(ijk[std::size_t(n)]));
+    for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.set(n, position(ijk[n]));
   }
   [[nodiscard]] Columns columns() const { return make_columns(mesh, topology, graph, faces, extents, known); }
   [[nodiscard]] Index32 at(Vec3 const& p) const { return Index32(std::find(ijk.begin(), ijk.end(), p) - ijk.begin()); }
@@ -58,20 +58,20 @@ void expect_columns(Standing const& s, Levels const& levels) {
   double level = 0;
   for (std::size_t k = 0; k < c.node.size(); ++k) {
     EXPECT_TRUE(place.emplace(c.node[k], k).second) << "each node once";
-    EXPECT_GE(s.ijk[std::size_t(c.node[k])].z, level) << "layer by layer";
-    level = s.ijk[std::size_t(c.node[k])].z;
+    EXPECT_GE(s.ijk[c.node[k]].z, level) << "layer by layer";
+    level = s.ijk[c.node[k]].z;
   }
   for (Index32 n = 0; n < s.mesh.n_nodes(); ++n) {
-    Vec3 const p = s.ijk[std::size_t(n)];
+    Vec3 const p = s.ijk[n];
     int const n_levels = levels(p);
     ASSERT_EQ(place.contains(n), p.z > 0 && p.z <= n_levels) << p.x << ' ' << p.y << ' ' << p.z;
     double length = 0;
     for (int k = 1; k <= n_levels && (k <= p.z || p.z == 0); ++k)
       length += distance(s.mesh.coordinates[s.at({p.x, p.y, k - 1.})], s.mesh.coordinates[s.at({p.x, p.y, double(k)})]);
     if (p.z == 0) {
-      EXPECT_NEAR(c.height[std::size_t(n)], length, 1e-13);
+      EXPECT_NEAR(c.height[n], length, 1e-13);
     } else {
-      EXPECT_EQ(c.height[std::size_t(n)], 0);
+      EXPECT_EQ(c.height[n], 0);
     }
     if (!place.contains(n)) continue;
     EXPECT_EQ(c.root[place[n]], s.at({p.x, p.y, 0}));
@@ -131,8 +131,8 @@ TEST(Columns, OfLinesThatLeanRiseLessThanTheyAreLong) {
     for (auto const* c : {&leaning, &plane}) {
       ASSERT_GT(c->size(), 0);
       for (Index32 const root : c->root) {
-        EXPECT_NEAR(c->height[std::size_t(root)], length, 1e-12);
-        EXPECT_NEAR(c->full_rise[std::size_t(root)], lean > std::sqrt(3) ? 6 : length, 1e-12);
+        EXPECT_NEAR(c->height[root], length, 1e-12);
+        EXPECT_NEAR(c->full_rise[root], lean > std::sqrt(3) ? 6 : length, 1e-12);
       }
     }
   }
@@ -141,7 +141,7 @@ TEST(Columns, OfLinesThatLeanRiseLessThanTheyAreLong) {
 TEST(Columns, EndBelowKnownNodes) {
   Standing s(to_prisms_and_tetrahedra(unit_box({4, 4, 5}), 4));
   s.stand_on("k_min", {Extent::layers, 4, 0});
-  s.known[std::size_t(s.at({2, 2, 3}))] = 1;
+  s.known[s.at({2, 2, 3})] = 1;
   expect_columns(s, [](Vec3 const& p) { return p.x == 2 && p.y == 2 ? 2 : 4; });
 }
 
@@ -152,7 +152,7 @@ TEST(Columns, InAPlaneGoThroughQuadrilaterals) {
   Columns const c = s.columns();
   EXPECT_EQ(c.size(), 7 * 4);
   for (std::size_t k = 0; k < c.node.size(); ++k) {
-    Vec3 const p = s.ijk[std::size_t(c.node[k])];
+    Vec3 const p = s.ijk[c.node[k]];
     EXPECT_EQ(c.root[k], s.at({p.x, 0, 0}));
     EXPECT_EQ(c.above_wall[k], p.y);
   }
@@ -165,10 +165,10 @@ TEST(Columns, StandOnAnySideOfTheBoxAlike) {
       Standing s(to_hexahedra(unit_box(cells)));
       s.stand_on(std::string(face_name(axis, side)), {Extent::layers, 2, 0});
       Columns const c = s.columns();
-      Index const on_wall = s.mesh.n_nodes() / (cells[std::size_t(axis)] + 1);
+      Index const on_wall = s.mesh.n_nodes() / (cells[axis] + 1);
       EXPECT_EQ(c.size(), 2 * on_wall);
       for (std::size_t k = 0; k < c.node.size(); ++k) {
-        Vec3 const up = s.ijk[std::size_t(c.node[k])] - s.ijk[std::size_t(c.root[k])];
+        Vec3 const up = s.ijk[c.node[k]] - s.ijk[c.root[k]];
         double const along[3] = {up.x, up.y, up.z};
         EXPECT_EQ(along[axis] * (side == 0 ? 1 : -1), Index(k) < on_wall ? 1 : 2);
         EXPECT_EQ(norm(up), std::abs(along[axis]));
@@ -185,7 +185,7 @@ TEST(Columns, InACornerEachNodeBelongsToTheNearestWallThenToTheFirst) {
     std::set<Index32> nodes(c.node.begin(), c.node.end());
     EXPECT_EQ(nodes.size(), c.node.size());
     for (std::size_t k = 0; k < c.node.size(); ++k) {
-      Vec3 const p = s.ijk[std::size_t(c.node[k])], root = s.ijk[std::size_t(c.root[k])];
+      Vec3 const p = s.ijk[c.node[k]], root = s.ijk[c.root[k]];
       EXPECT_EQ(c.above_wall[k], std::min(p.x, p.z));
       EXPECT_EQ(distance(p, root), c.above_wall[k]);
       if (p.x == 1 && p.z == 1) {

@@ -38,13 +38,13 @@ void append(Mesh& to, Mesh const& from, std::string const& suffix, Vec3 const& s
     int const z = to.add_zone(zone.name + suffix, zone.size());
     auto const moved = [&](std::span<Index32 const> nodes) {
       std::vector<Index32> out;
-      for (Index32 const n : nodes) out.push_back(Index32(n - zone.first_node + to.zones[std::size_t(z)].first_node));
+      for (Index32 const n : nodes) out.push_back(Index32(n - zone.first_node + to.zones[z].first_node));
       return out;
     };
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
-      to.add_element(from.elements.type[std::size_t(e)], moved(from.elements.nodes[e]));
+      to.add_element(from.elements.type[e], moved(from.elements.nodes[e]));
     for (Patch const& patch : from.patches) {
-      if (&from.zones[std::size_t(patch.zone)] != &zone) continue;
+      if (&from.zones[patch.zone] != &zone) continue;
       Patch own = patch;
       own.name += suffix;
       own.zone = z;
@@ -321,15 +321,15 @@ TEST(CommonMotion, HasExactRates) {
   ASSERT_EQ(prepared.plan.parts.size(), 2U);
   EXPECT_TRUE(prepared.plan.parts.front().common);
   EXPECT_FALSE(prepared.plan.parts.back().common);
-  std::vector<std::uint8_t> moves(std::size_t(c.mesh.n_nodes()), 0);
+  std::vector<std::uint8_t> moves(c.mesh.n_nodes(), 0);
   for (auto const& patch : c.mesh.patches)
     if (patch.name.starts_with("body") || !patch.name.ends_with(" 2"))
-      for (Index32 const n : patch_nodes(patch)) moves[std::size_t(n)] = 1;
+      for (Index32 const n : patch_nodes(patch)) moves[n] = 1;
   auto const [error, largest] = rate_error(c, prepared.plan, [&](double t) {
     std::vector<Vec3> u;
     for (Index32 const n : prepared.plan.known) {
       Vec3 const x = c.mesh.coordinates[n];
-      u.push_back(moves[std::size_t(n)] != 0 ? where(x, t) - x : Vec3{});
+      u.push_back(moves[n] != 0 ? where(x, t) - x : Vec3{});
     }
     return u;
   });

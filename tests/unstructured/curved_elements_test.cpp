@@ -43,8 +43,8 @@ CurvedElement element(ElementType type, std::vector<Vec3> const& corner, std::fu
   CurvedElement c{type, {}};
   for (std::size_t k = 0; k < corner.size(); ++k) c.at[k] = to(corner[k]);
   for (int e = 0; e < n_edges(type); ++e)
-    c.at[corner.size() + std::size_t(e)] = to(0.5 * (corner[std::size_t(kernels::edge_corner(type, e, 0))] +
-                                                     corner[std::size_t(kernels::edge_corner(type, e, 1))]));
+    c.at[corner.size() + std::size_t(e)] =
+        to(0.5 * (corner[kernels::edge_corner(type, e, 0)] + corner[kernels::edge_corner(type, e, 1)]));
   if (kernels::n_curved_nodes(type) > n_corners(type) + n_edges(type)) kernels::curved::complete(c);
   return c;
 }
@@ -307,13 +307,13 @@ TEST(CurvedMeshes, TheGuardTakesMiddlesAlong) {
     if (inner) m.x.set(n, m.x[n] + Vec3{1.3, 0.9, 0.4});
   }
   for (Index r = 0; r < rows.size(); ++r) {
-    Index32 const n = rows.target[std::size_t(r)];
+    Index32 const n = rows.target[r];
     Vec3 u;
     double sum = 0;
-    for (Index k = rows.first[std::size_t(r)]; k < rows.first[std::size_t(r) + 1]; ++k) {
-      Index32 const item = rows.item[std::size_t(k)];
-      u += double(rows.weight[std::size_t(k)]) * (m.x[item] - mesh.coordinates[item]);
-      sum += double(rows.weight[std::size_t(k)]);
+    for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      Index32 const item = rows.item[k];
+      u += double(rows.weight[k]) * (m.x[item] - mesh.coordinates[item]);
+      sum += double(rows.weight[k]);
     }
     ASSERT_NEAR(sum, 1, 1e-5);
     if (m.prepared.plan.middle_boundary.node.end() ==

@@ -69,7 +69,7 @@ std::vector<Shape> shapes() {
 detail::FittedDomain fitted(UnstructuredCase const& c) {
   std::vector<std::uint8_t> moving;
   for (Index f = 0; f < c.topology.boundary.size(); ++f)
-    moving.push_back(c.face_patches.patch[std::size_t(f)] == c.patch("body") ? 1 : 0);
+    moving.push_back(c.face_patches.patch[f] == c.patch("body") ? 1 : 0);
   std::vector<Axis> const axes(1);
   return detail::fit_domain({}, c.mesh, c.topology.boundary, moving, axes);
 }
@@ -127,7 +127,7 @@ TEST(Domain, OfAFoldedMeshIsFoundInTheEnd) {
       mesh.coordinates.set(n, p);
     }
     UnstructuredTopology const topology = make_topology(mesh);
-    std::vector<std::uint8_t> const moving(std::size_t(topology.boundary.size()), 0);
+    std::vector<std::uint8_t> const moving(topology.boundary.size(), 0);
     detail::FittedDomain const found = detail::fit_domain({}, mesh, topology.boundary, moving, {});
     EXPECT_LE(found.share, 1) << seed;
   }
@@ -205,7 +205,7 @@ TEST(FittedBackground, LeavesAllThatIsNearTheWallsToTheWrap) {
     UnstructuredCase const c(around_body(shape.to));
     std::vector<CsrGraph> walls(1);
     for (Index f = 0; f < c.topology.boundary.size(); ++f)
-      if (c.face_patches.patch[std::size_t(f)] == c.patch("body")) walls[0].add(c.topology.boundary.nodes[f]);
+      if (c.face_patches.patch[f] == c.patch("body")) walls[0].add(c.topology.boundary.nodes[f]);
     WrapOptions options;
     options.offset = 0.8;
     options.domain = fitted(c).domain;
@@ -213,7 +213,7 @@ TEST(FittedBackground, LeavesAllThatIsNearTheWallsToTheWrap) {
     Random random(7);
     Index32 const last = Index32(walls[0].item.size()) - 1;
     for (int k = 0; k <= last; ++k) {
-      Vec3 const p = c.mesh.coordinates[walls[0].item[std::size_t(k)]];
+      Vec3 const p = c.mesh.coordinates[walls[0].item[k]];
       Vec3 const r = random.vector(1);
       // Charts stretch lengths by what they are at the faces, a little differently elsewhere.
       EXPECT_TRUE(wrap.contains(p + (0.9 * options.offset / std::max(1.0, norm(r))) * r));
@@ -258,7 +258,7 @@ TEST(FittedBackground, NodesSlideOnSidesThatSlip) {
   auto const nodes = wrap_nodes(background, *prepared.plan.background_morph);
   Plan const& plan = prepared.plan.background_morph->plan();
   std::vector<Vec3> boundary(plan.boundary_nodes.size());
-  for (Index32 const b : nodes.boundary_node) boundary[std::size_t(b)] = {0.4, 0.1, 0.2};
+  for (Index32 const b : nodes.boundary_node) boundary[b] = {0.4, 0.1, 0.2};
   using Host = UnstructuredCase::Host;
   Coordinates const& before = background.mesh.coordinates;
   Coordinates x(before.size());

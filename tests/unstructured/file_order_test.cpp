@@ -49,14 +49,14 @@ Mesh two_boxes() {
     for (int s = 0; s < n_sides(mesh, e); ++s) mesh.polyhedra.faces.add(side_nodes(mesh, e, s, room));
     mesh.polyhedra.first_face.push_back(mesh.polyhedra.faces.size());
   }
-  for (Index32 const e : {3, 8}) mesh.elements.type[std::size_t(e)] = ElementType::polyhedron;
+  for (Index32 const e : {3, 8}) mesh.elements.type[e] = ElementType::polyhedron;
   Index32 const first_node = Index32(mesh.n_nodes()), first_element = Index32(mesh.n_elements());
   Mesh const other = to_hexahedra(unit_box({3, 4, 6}));
   mesh.add_zone("second", other.n_nodes());
   for (Index e = 0; e < other.n_elements(); ++e) {
     std::vector<Index32> nodes;
     for (Index32 const n : other.elements.corners(e)) nodes.push_back(n + first_node);
-    mesh.add_element(other.elements.type[std::size_t(e)], nodes);
+    mesh.add_element(other.elements.type[e], nodes);
     mesh.elements.number.push_back(first_element + Index32(e));
   }
   Coordinates x(mesh.n_nodes());
@@ -87,7 +87,7 @@ TEST(FileOrder, TheWayBackIsExact) {
   std::vector<double> along;
   for (Index n = 0; n < mesh.n_nodes(); ++n) along.push_back(ordered.coordinates.y(n));
   auto const back = in_file_order(ordered.file_order.node, along);
-  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back[std::size_t(n)], mesh.coordinates.y(n));
+  for (Index n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(back[n], mesh.coordinates.y(n));
 }
 
 TEST(FileOrder, WhatBelongsTogetherStaysTogether) {
@@ -103,7 +103,7 @@ TEST(FileOrder, WhatBelongsTogetherStaysTogether) {
   EXPECT_EQ(a.boundary.size(), b.boundary.size());
   EXPECT_EQ(find_face_patches(mesh, a).faces_of_patch, find_face_patches(ordered, b).faces_of_patch);
   for (std::size_t p = 0; p < ordered.polyhedra.element.size(); ++p)
-    EXPECT_EQ(ordered.elements.type[std::size_t(ordered.polyhedra.element[p])], ElementType::polyhedron);
+    EXPECT_EQ(ordered.elements.type[ordered.polyhedra.element[p]], ElementType::polyhedron);
 }
 
 TEST(FileOrder, MessagesCountAsTheFileDoes) {
@@ -113,9 +113,9 @@ TEST(FileOrder, MessagesCountAsTheFileDoes) {
     auto ordered = mesh;
     reorder(ordered, order_by_position(mesh));
     for (Index n = 0; n < mesh.n_nodes(); ++n)
-      EXPECT_EQ(describe_node(ordered, n), describe_node(mesh, ordered.file_order.node[std::size_t(n)]));
+      EXPECT_EQ(describe_node(ordered, n), describe_node(mesh, ordered.file_order.node[n]));
     for (Index e = 0; e < mesh.n_elements(); ++e)
-      EXPECT_EQ(describe_element(ordered, e), describe_element(mesh, ordered.file_order.element[std::size_t(e)]));
+      EXPECT_EQ(describe_element(ordered, e), describe_element(mesh, ordered.file_order.element[e]));
   }
 }
 

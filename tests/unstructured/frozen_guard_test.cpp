@@ -45,8 +45,8 @@ TEST(FrozenGuardOfElements, SeveralDisplacementsComeBackAndAddUp) {
   for (std::size_t b = 0; b < one.size(); ++b)
     other.push_back(norm(one[b]) > 0 ? Vec3{0.2, 0.1 * mesh.coordinates[plan.known[b]].z, 0} : Vec3{});
   Both<> const bare(plan, mesh.coordinates, nullptr);
-  std::vector<char> fixed(std::size_t(mesh.n_nodes()), 0);
-  for (Index32 const n : plan.known) fixed[std::size_t(n)] = 1;
+  std::vector<char> fixed(mesh.n_nodes(), 0);
+  for (Index32 const n : plan.known) fixed[n] = 1;
   Random random(3);
   SmoothingRecord record(whole);
   std::vector<Coordinates> wanted;
@@ -54,7 +54,7 @@ TEST(FrozenGuardOfElements, SeveralDisplacementsComeBackAndAddUp) {
     Coordinates const plain = bare.positions(bare.plain, boundary);
     Coordinates guarded = copy_of(plain);
     for (Index n = 0; n < guarded.size(); ++n)
-      if (fixed[std::size_t(n)] == 0 && random.below(3) == 0) guarded.set(n, plain[n] + random.vector(0.1));
+      if (fixed[n] == 0 && random.below(3) == 0) guarded.set(n, plain[n] + random.vector(0.1));
     record.add(boundary, plain, guarded);
     wanted.push_back(guarded);
   }

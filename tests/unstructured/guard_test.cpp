@@ -161,13 +161,13 @@ TEST_P(TangledElements, ComeHome) {
   PlanOptions options;
   options.boundary_layers = {{{"k_min"}, BoundaryLayer::Extent::layers, 1, 0, BoundaryLayer::Mode::rotate}};
   PreparedUnstructured const prepared = prepare(mesh, topology, face_patches, motion, options);
-  std::vector<std::uint8_t> held(std::size_t(mesh.n_nodes()), 0);
+  std::vector<std::uint8_t> held(mesh.n_nodes(), 0);
   for (auto const* list : {&prepared.plan.known, &prepared.plan.residual_nodes, &prepared.plan.columns.node})
-    for (Index32 const n : *list) held[std::size_t(n)] = 1;
+    for (Index32 const n : *list) held[n] = 1;
   Random random(5);
   Coordinates tangled(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
-    Vec3 const move = held[std::size_t(n)] != 0 ? Vec3{} : random.vector(amplitude);
+    Vec3 const move = held[n] != 0 ? Vec3{} : random.vector(amplitude);
     tangled.set(n, mesh.coordinates[n] + move);
   }
   auto const relaxed = [&](GuardReport& report) {
@@ -185,7 +185,7 @@ TEST_P(TangledElements, ComeHome) {
   EXPECT_TRUE(certify(Exec(), mesh, topology, {views(x), views(mesh.coordinates)}).holds());
   EXPECT_LT(report.after, report.before / 10);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    if (held[std::size_t(n)] != 0) {
+    if (held[n] != 0) {
       EXPECT_EQ(x[n], tangled[n]);
     }
 }

@@ -37,7 +37,7 @@ class HybridFile {
     for (auto const& child : base.children)
       if (child.label != "Zone_t") copy(to, id, a, child);
     for (int z = 0; z < int(blocks.zones.size()); ++z) {
-      auto const& name = blocks.zones[std::size_t(z)].name;
+      auto const& name = blocks.zones[z].name;
       if (is_elements(z))
         zone(to, id, b, *other.labelled("CGNSBase_t")->child(name), z);
       else
@@ -47,7 +47,7 @@ class HybridFile {
   }
 
  private:
-  [[nodiscard]] bool is_elements(int z) const { return as_elements_.contains(blocks_.zones[std::size_t(z)].name); }
+  [[nodiscard]] bool is_elements(int z) const { return as_elements_.contains(blocks_.zones[z].name); }
 
   static std::string raw(cgns::File const& file, cgns::Node const& node) {
     std::string const type = file.type(node);
@@ -85,8 +85,7 @@ class HybridFile {
   }
 
   void mixed(cgns::File& to, double parent, cgns::File const& from, cgns::Node const& node, Connection const& c) const {
-    double const id =
-        to.create_text(parent, c.name, "GridConnectivity_t", blocks_.zones[std::size_t(c.donor_zone)].name);
+    double const id = to.create_text(parent, c.name, "GridConnectivity_t", blocks_.zones[c.donor_zone].name);
     to.create_text(id, "GridConnectivityType", "GridConnectivityType_t", "Abutting1to1");
     points(to, id, "PointList", c.zone, c.nodes);
     points(to, id, "PointListDonor", c.donor_zone, c.donor_nodes);
@@ -96,7 +95,7 @@ class HybridFile {
   }
 
   void points(cgns::File& to, double parent, char const* name, int z, std::vector<Index32> const& nodes) const {
-    auto const& zone = blocks_.zones[std::size_t(z)];
+    auto const& zone = blocks_.zones[z];
     std::vector<std::int32_t> list;
     for (Index32 const n : nodes) {
       auto const p = zone.index(n);

@@ -231,7 +231,7 @@ TEST(Hybrid, OrderByPositionLeavesBlocksInPlace) {
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n)
       ASSERT_EQ(ordered.coordinates[n], read.coordinates[n]);
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
-      ASSERT_EQ(ordered.elements.number[std::size_t(e)], e - zone.first_element + 1);
+      ASSERT_EQ(ordered.elements.number[e], e - zone.first_element + 1);
     EXPECT_EQ(describe_node(ordered, zone.first_node + 3), describe_node(read, zone.first_node + 3));
   }
   auto const one = folder.file("one.cgns"), two = folder.file("two.cgns");
@@ -306,7 +306,7 @@ TEST(Hybrid, DamagedRangesAndListsAreNamed) {
   auto const between =
       std::find_if(face.begin(), face.end(), [](auto const& f) { return f.zone % 2 == 0 && f.donor_zone % 2 == 0; });
   ASSERT_NE(between, face.end());
-  auto const& zone = three.blocks.zones[std::size_t(between->zone)].name;
+  auto const& zone = three.blocks.zones[between->zone].name;
   expect(bricks_with_t_junctions(3), "/" + zone + "/ZoneGridConnectivity/" + between->name + "/PointRangeDonor",
          {1, 1, 1, 1, 88, 4}, {"zone '" + zone + "'", "interface '" + between->name + "'", "donor range"});
 }

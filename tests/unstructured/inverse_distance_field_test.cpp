@@ -189,7 +189,7 @@ TEST(InverseDistanceField, OfOneRigidMotionIsThatMotion) {
   InverseDistanceField const planned = sources.planned(3, {-4, -4, -4}, {12, 12, 12}, 4000);
   auto const found = on_lattice(planned, motions);
   for (Index n = 0; n < planned.shape.size(); ++n)
-    EXPECT_LT(distance(found[std::size_t(n)], Vec3{1, 2, 3} + gradient * planned.shape.position(n)), 1e-6) << n;
+    EXPECT_LT(distance(found[n], Vec3{1, 2, 3} + gradient * planned.shape.position(n)), 1e-6) << n;
 }
 
 TEST(InverseDistanceField, NumberingOfTheNodesDoesNotMatter) {

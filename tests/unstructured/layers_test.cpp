@@ -26,7 +26,7 @@ struct Around {
 
   Around(Mesh m, std::vector<Index32> const& sources)
       : mesh(std::move(m)), seeds(std::size_t(mesh.n_nodes()), 0), wanted(seeds.size(), 1) {
-    for (Index32 const n : sources) seeds[std::size_t(n)] = 1, wanted[std::size_t(n)] = 0;
+    for (Index32 const n : sources) seeds[n] = 1, wanted[n] = 0;
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       double least = endless;
       for (Index32 const s : sources)
@@ -66,10 +66,9 @@ std::vector<Around> cases() {
 std::map<Index32, std::map<Index32, double>> rows_of(InterpolationOperator const& rows) {
   std::map<Index32, std::map<Index32, double>> out;
   for (Index r = 0; r < rows.size(); ++r) {
-    auto& row = out[rows.target[std::size_t(r)]];
+    auto& row = out[rows.target[r]];
     EXPECT_TRUE(row.empty()) << "each target once";
-    for (Index k = rows.first[std::size_t(r)]; k < rows.first[std::size_t(r) + 1]; ++k)
-      row[rows.item[std::size_t(k)]] += rows.weight[std::size_t(k)];
+    for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) row[rows.item[k]] += rows.weight[k];
   }
   return out;
 }
@@ -83,10 +82,10 @@ TEST(Layers, RowsAreTheMeansOfNearerNeighbours) {
       std::vector<std::pair<double, Index32>> expected;
       Index32 nearest = -1;
       for (Index32 const m : a.graph.neighbours[node]) {
-        double const nearer = a.distance[std::size_t(node)] - a.distance[std::size_t(m)];
+        double const nearer = a.distance[node] - a.distance[m];
         double const s = std::clamp((nearer / a.edge(node, m) - 0.28) / 0.1, 0.0, 1.0);
         if (s > 0) expected.emplace_back(weight(node, m) * s * s * (3 - 2 * s), m);
-        if (nearest < 0 || a.distance[std::size_t(m)] < a.distance[std::size_t(nearest)]) nearest = m;
+        if (nearest < 0 || a.distance[m] < a.distance[nearest]) nearest = m;
       }
       if (expected.empty()) expected.emplace_back(1, nearest);
       std::sort(expected.rbegin(), expected.rend());
@@ -114,21 +113,20 @@ TEST(Layers, SourcesLieInLayersBeforeAndOneOfThemInTheLast) {
     EXPECT_EQ(layers.level.back(), layers.rows.size());
     for (int l = 0; l < layers.n_layers(); ++l) {
       double before = 0;
-      EXPECT_LT(layers.level[std::size_t(l)], layers.level[std::size_t(l) + 1]);
-      for (Index r = layers.level[std::size_t(l)]; r < layers.level[std::size_t(l) + 1]; ++r) {
+      EXPECT_LT(layers.level[l], layers.level[l + 1]);
+      for (Index r = layers.level[l]; r < layers.level[l + 1]; ++r) {
         int highest = -1;
-        for (Index k = layers.rows.first[std::size_t(r)]; k < layers.rows.first[std::size_t(r) + 1]; ++k) {
-          int const source = layer[std::size_t(layers.rows.item[std::size_t(k)])];
+        for (Index k = layers.rows.first[r]; k < layers.rows.first[r + 1]; ++k) {
+          int const source = layer[layers.rows.item[k]];
           EXPECT_GE(source, 0);
           highest = std::max(highest, source);
         }
         EXPECT_EQ(highest, l);
-        double const d = a.distance[std::size_t(layers.rows.target[std::size_t(r)])];
+        double const d = a.distance[layers.rows.target[r]];
         EXPECT_GE(d, before);
         before = d;
       }
-      for (Index r = layers.level[std::size_t(l)]; r < layers.level[std::size_t(l) + 1]; ++r)
-        layer[std::size_t(layers.rows.target[std::size_t(r)])] = l + 1;
+      for (Index r = layers.level[l]; r < layers.level[l + 1]; ++r) layer[layers.rows.target[r]] = l + 1;
     }
   }
 }

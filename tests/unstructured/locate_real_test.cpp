@@ -46,7 +46,7 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     Location middle;
     middle.element = Index32(e);
-    ElementType const type = mesh.elements.type[std::size_t(e)];
+    ElementType const type = mesh.elements.type[e];
     middle.local = type == ElementType::tetrahedron ? Vec3{0.25, 0.25, 0.25}
                    : type == ElementType::triangle || type == ElementType::prism
                        ? Vec3{1.0 / 3, 1.0 / 3, type == ElementType::prism ? 0.5 : 0}
@@ -68,17 +68,16 @@ TEST_P(LocateReal, NodesAndMiddlesOfElementsLieInside) {
   bool const zones_overlap = name == "rotorstator.cgns";
   EXPECT_EQ(elsewhere > 0, zones_overlap);
   // Nodes take their own value, or that of one at the same place in another zone.
-  std::vector<Index32> targets(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> targets(mesh.n_nodes());
   for (std::size_t n = 0; n < targets.size(); ++n) targets[n] = Index32(n);
   auto const rows = interpolation_rows({}, mesh, std::span<Location const>(found).first(targets.size()), targets);
   Index several = 0;
   for (Index n = 0; n < rows.size(); ++n) {
-    if (rows.first[std::size_t(n) + 1] - rows.first[std::size_t(n)] != 1) {
+    if (rows.first[n + 1] - rows.first[n] != 1) {
       ++several;
       continue;
     }
-    EXPECT_LT(distance(mesh.coordinates[rows.item[std::size_t(rows.first[std::size_t(n)])]], mesh.coordinates[n]),
-              tolerance);
+    EXPECT_LT(distance(mesh.coordinates[rows.item[rows.first[n]]], mesh.coordinates[n]), tolerance);
   }
   // Rows of the stand-in turbine touch along planes, where nodes of the one lie on faces of the other.
   EXPECT_EQ(several > 0, zones_overlap || name == "water_turbine.cgns");

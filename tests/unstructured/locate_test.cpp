@@ -41,7 +41,7 @@ std::vector<Location> locate_with(Mesh const& mesh, std::vector<Vec3> const& poi
 }
 
 std::vector<Index32> all_of(Mesh const& mesh) {
-  std::vector<Index32> all(std::size_t(mesh.n_elements()));
+  std::vector<Index32> all(mesh.n_elements());
   std::iota(all.begin(), all.end(), 0);
   return all;
 }
@@ -66,16 +66,16 @@ Mesh polyhedra_of(Mesh const& mesh) {
   Mesh out = mesh;
   out.polyhedra.first_face.push_back(0);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    ElementType const type = mesh.elements.type[std::size_t(e)];
+    ElementType const type = mesh.elements.type[e];
     auto const corners = mesh.elements.corners(e);
     for (int f = 0; f < n_faces(type); ++f) {
       std::vector<Index32> face;
-      for (int k = 0; k < n_face_corners(type, f); ++k) face.push_back(corners[std::size_t(face_corner(type, f, k))]);
+      for (int k = 0; k < n_face_corners(type, f); ++k) face.push_back(corners[face_corner(type, f, k)]);
       out.polyhedra.faces.add(face);
     }
     out.polyhedra.element.push_back(Index32(e));
     out.polyhedra.first_face.push_back(out.polyhedra.faces.size());
-    out.elements.type[std::size_t(e)] = ElementType::polyhedron;
+    out.elements.type[e] = ElementType::polyhedron;
   }
   return out;
 }
@@ -97,8 +97,7 @@ Mesh pyramids(Index3 cells) {
     for (int f = 0; f < 6; ++f) {
       std::array<Index32, 5> nodes{};
       // Bases are counter-clockwise seen from inside: faces turned round.
-      for (int k = 0; k < 4; ++k)
-        nodes[std::size_t(k)] = c[std::size_t(face_corner(ElementType::hexahedron, f, 3 - k))];
+      for (int k = 0; k < 4; ++k) nodes[k] = c[face_corner(ElementType::hexahedron, f, 3 - k)];
       nodes[4] = centre;
       out.add_element(ElementType::pyramid, nodes);
     }
@@ -206,7 +205,7 @@ TEST(ElementLocator, PlacesAreThoseOfASearchThroughAllElements) {
       Index32 holding = -1, nearest = -1;
       double least = unbounded;
       for (Index32 e = 0; e < mesh.n_elements() && holding < 0; ++e) {
-        ElementType const type = mesh.elements.type[std::size_t(e)];
+        ElementType const type = mesh.elements.type[e];
         Vec3 local;
         if (element_contains(type, corners_of(mesh, e), points[n], tolerance, local)) holding = e;
         double d = nearest_in_element(type, corners_of(mesh, e), points[n]).distance;
@@ -265,9 +264,9 @@ TEST(ElementLocator, SharedPlacesBelongToTheElementWithTheSmallestNumber) {
   for (auto const& [name, mesh] : cases()) {
     SCOPED_TRACE(name);
     std::vector<Vec3> points;
-    std::vector<Index32> smallest(std::size_t(mesh.n_nodes()), -1);
+    std::vector<Index32> smallest(mesh.n_nodes(), -1);
     for (Index e = mesh.n_elements() - 1; e >= 0; --e)
-      for (Index32 const n : mesh.elements.corners(e)) smallest[std::size_t(n)] = Index32(e);
+      for (Index32 const n : mesh.elements.corners(e)) smallest[n] = Index32(e);
     for (Index n = 0; n < mesh.n_nodes(); ++n) points.push_back(mesh.coordinates[n]);
     auto const found = locate(mesh, points);
     for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(found[n].element, smallest[n]);
@@ -287,7 +286,7 @@ TEST(ElementLocator, OfPlacesEquallyNearTheSameIsTakenHoweverElementsAreNumbered
     auto const expected = locate(mesh, points);
     for (int again = 0; again < 5; ++again) {
       FileOrder order;
-      order.node.resize(std::size_t(mesh.n_nodes()));
+      order.node.resize(mesh.n_nodes());
       std::iota(order.node.begin(), order.node.end(), 0);
       order.element = all_of(mesh);
       random.shuffle(order.element);
@@ -423,7 +422,7 @@ TEST(InterpolationRows, LinearFieldsAndConstantsAreReproducedByAllElements) {
       EXPECT_NEAR(value, field(position(mesh, where[n])), 1e-11 * size);
       double row = 0;
       for (Index k = rows.first[n]; k < rows.first[n + 1]; ++k)
-        row += double(rows.weight[std::size_t(k)]) * field(mesh.coordinates[rows.item[std::size_t(k)]]);
+        row += double(rows.weight[k]) * field(mesh.coordinates[rows.item[k]]);
       EXPECT_NEAR(row, value, 2e-6 * size);
     }
   }

@@ -184,7 +184,7 @@ TEST(CurvedMargin, BoundsTheJacobianFromBelow) {
     Mesh const straight =
         second_order(form.name.starts_with("quad") ? flat_box(6, 5, 3) : to_hexahedra(unit_box({2, 2, 2})), true);
     auto const of = [](Mesh const& mesh, Coordinates const& x, Index e) {
-      kernels::CurvedElement out{mesh.elements.type[std::size_t(e)], {}};
+      kernels::CurvedElement out{mesh.elements.type[e], {}};
       auto const nodes = mesh.elements.nodes[e];
       for (std::size_t k = 0; k < nodes.size(); ++k) out.at[k] = x[nodes[k]];
       if (int(nodes.size()) < kernels::n_curved_nodes(out.type)) kernels::curved::complete(out);

@@ -169,7 +169,7 @@ TEST(UnstructuredMorph, BafflesMoveAsTheyAreToldOnBothSides) {
                 2 * faces.size());
       for (std::size_t f = 0; f < behind.size(); ++f)
         if (behind[f] >= 0) {
-          EXPECT_EQ(behind[std::size_t(behind[f])], Index32(f));
+          EXPECT_EQ(behind[behind[f]], Index32(f));
         }
       for (std::size_t p = 4 + (plane ? 0 : 2); p < c.mesh.patches.size(); ++p)
         EXPECT_EQ(c.face_patches.faces_of_patch[p], Index(faces.size()) * (two_patches ? 1 : 2));
@@ -259,7 +259,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
       if (is_first)
         reference.push_back(x);
       else
-        ASSERT_LT(distance(x, reference[std::size_t(n)]), 1e-12) << n;
+        ASSERT_LT(distance(x, reference[n]), 1e-12) << n;
     }
     if (is_first || (way.to({1, 0, 0}).y == 1) != periodic) continue;
     auto const rate =
@@ -285,7 +285,7 @@ TEST(UnstructuredMorph, PlaneMeshesMoveAlikeAcrossAnyAxis) {
                       Kokkos::View<Vec3*, Kokkos::HostSpace>(dJ_db.data(), dJ_db.size()));
     Case::Host().fence();
     double forwards = 0, backwards = 0;
-    for (Index n = 0; n < c.mesh.n_nodes(); ++n) forwards += dot(dJ_dx[std::size_t(n)], v[n]);
+    for (Index n = 0; n < c.mesh.n_nodes(); ++n) forwards += dot(dJ_dx[n], v[n]);
     for (std::size_t k = 0; k < u.size(); ++k) backwards += dot(dJ_db[k], du[k]);
     EXPECT_NEAR(forwards, backwards, 1e-10 * std::abs(forwards));
   }
@@ -481,7 +481,7 @@ TEST(UnstructuredMorph, ColumnsOfPrismsKeepTheirHeight) {
   auto const& columns = m.prepared.plan.columns;
   ASSERT_GT(columns.node.size(), 100u);
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
-    Index32 const wall = m.prepared.plan.driving[std::size_t(columns.root[k])];
+    Index32 const wall = m.prepared.plan.driving[columns.root[k]];
     // The rim of the wall is where the fixed sides begin.
     Vec3 const w = c.mesh.coordinates[wall];
     if (w.x < 1 || w.x > 9 || w.y < 1 || w.y > 9) continue;

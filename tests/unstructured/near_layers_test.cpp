@@ -34,12 +34,12 @@ Case rooted() {
       },
       true);
   // Elements of many shapes.
-  std::vector<std::uint8_t> inside(std::size_t(mesh.n_nodes()), 1);
+  std::vector<std::uint8_t> inside(mesh.n_nodes(), 1);
   for (Patch const& patch : mesh.patches)
-    for (Index32 const n : patch_nodes(patch)) inside[std::size_t(n)] = 0;
+    for (Index32 const n : patch_nodes(patch)) inside[n] = 0;
   Random random(3);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    if (inside[std::size_t(n)]) mesh.coordinates.set(n, mesh.coordinates[n] + random.vector(0.12));
+    if (inside[n]) mesh.coordinates.set(n, mesh.coordinates[n] + random.vector(0.12));
   return Case(std::move(mesh));
 }
 Motion moves(Vec3 const& axis, double per_length) {
@@ -104,7 +104,7 @@ TEST(NearLayers, RowsPassRigidMotionsOnExactlyAndMeansOfOthers) {
                                         motion.data(),
                                         u.data()};
   for (Index row : {0, 1}) pass(row);
-  for (Index32 const n : {1, 2}) EXPECT_LT(distance(x[n] + u[std::size_t(n)], r(x[n])), 1e-14);
+  for (Index32 const n : {1, 2}) EXPECT_LT(distance(x[n] + u[n], r(x[n])), 1e-14);
   EXPECT_NEAR(motion[2].gradient.m[1][0], gradient.m[1][0], 1e-15);
   EXPECT_EQ(motion[3].gradient.m[1][0], 0);
   motion[1] = {};

@@ -32,11 +32,11 @@ Mesh shuffled_box(Index3 cells, int prism_layers) {
   Mesh out;
   out.add_zone("zone", from.n_nodes());
   out.coordinates = Coordinates(from.n_nodes());
-  for (Index n = 0; n < from.n_nodes(); ++n) out.coordinates.set(node[std::size_t(n)], from.coordinates[n]);
+  for (Index n = 0; n < from.n_nodes(); ++n) out.coordinates.set(node[n], from.coordinates[n]);
   for (Index32 const e : shuffled_numbers(from.n_elements(), random)) {
     std::vector<Index32> corners;
-    for (Index32 const c : from.elements.corners(e)) corners.push_back(node[std::size_t(c)]);
-    out.add_element(from.elements.type[std::size_t(e)], corners);
+    for (Index32 const c : from.elements.corners(e)) corners.push_back(node[c]);
+    out.add_element(from.elements.type[e], corners);
   }
   return out;
 }
@@ -53,19 +53,19 @@ TEST(IndexBuckets, KeepTheOrderOfTheItemsUnderEachKey) {
       for (Index32 const key : own) expected[key].push_back(i);
     }
     detail::IndexBuckets<Index32> const buckets({}, "test", n_items, n_keys, [&](Index i, auto const& put) {
-      for (Index32 const key : keys[std::size_t(i)]) put(key, Index32(i));
+      for (Index32 const key : keys[i]) put(key, Index32(i));
     });
     std::vector<std::vector<Index32>> found(static_cast<std::size_t>(n_keys));
     std::vector<Index> before(static_cast<std::size_t>(n_keys), -1);
     buckets.for_each_key([&](Index32 key, Index at, std::span<Index32 const> items) {
-      found[std::size_t(key)].assign(items.begin(), items.end());
-      before[std::size_t(key)] = at;
+      found[key].assign(items.begin(), items.end());
+      before[key] = at;
     });
     Index sum = 0;
     for (Index32 key = 0; key < n_keys; ++key) {
-      EXPECT_EQ(found[std::size_t(key)], expected[key]) << key << " of " << n_keys;
-      EXPECT_EQ(before[std::size_t(key)], sum);
-      sum += Index(found[std::size_t(key)].size());
+      EXPECT_EQ(found[key], expected[key]) << key << " of " << n_keys;
+      EXPECT_EQ(before[key], sum);
+      sum += Index(found[key].size());
     }
     EXPECT_EQ(buckets.size(), sum);
   }
@@ -82,10 +82,10 @@ TEST(NodeGraph, NeighboursAreTheOtherEndsOfAllEdges) {
   ASSERT_GT(mesh.n_nodes(), 2048);
   std::map<Index32, std::set<Index32>> expected;
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    auto const type = mesh.elements.type[std::size_t(e)];
+    auto const type = mesh.elements.type[e];
     auto const c = mesh.elements.corners(e);
     for (int k = 0; k < n_edges(type); ++k) {
-      Index32 const a = c[std::size_t(edge_corner(type, k, 0))], b = c[std::size_t(edge_corner(type, k, 1))];
+      Index32 const a = c[edge_corner(type, k, 0)], b = c[edge_corner(type, k, 1)];
       expected[a].insert(b);
       expected[b].insert(a);
     }
@@ -117,7 +117,7 @@ TEST(UnstructuredTopology, SidesMeetWhereTheyHaveTheSameNodes) {
       auto const& both = elements_of_side.at(nodes_of(e, s));
       ASSERT_LE(both.size(), 2u);
       Index32 const expected = both.size() == 1 ? ElementSides::boundary : both[0] == e ? both[1] : both[0];
-      EXPECT_EQ(sides.of(e)[std::size_t(s)], expected) << "element " << e << " side " << s;
+      EXPECT_EQ(sides.of(e)[s], expected) << "element " << e << " side " << s;
     }
   auto const around = elements_of_nodes(mesh);
   std::map<Index32, std::vector<Index32>> expected;

@@ -67,8 +67,8 @@ Bent coil() {
 FileOrder shuffled(Mesh const& mesh, unsigned seed) {
   Random random(seed);
   FileOrder order;
-  order.node.resize(std::size_t(mesh.n_nodes()));
-  order.element.resize(std::size_t(mesh.n_elements()));
+  order.node.resize(mesh.n_nodes());
+  order.element.resize(mesh.n_elements());
   std::iota(order.node.begin(), order.node.end(), 0);
   std::iota(order.element.begin(), order.element.end(), 0);
   auto const shuffle_part = [&](std::vector<Index32>& list, Index first, Index n) {

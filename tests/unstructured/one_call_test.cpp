@@ -42,9 +42,9 @@ TEST(OneCall, ACallerPrescribesTheDisplacementOfAWall) {
   Index prescribed = 0;
   for (BoundaryPlace const& place : plan.boundary_places()) {
     auto const n = std::size_t(place.boundary_node);
-    EXPECT_EQ(c.mesh.zones[std::size_t(place.zone)].first_node + place.index[0], nodes[n]);
+    EXPECT_EQ(c.mesh.zones[place.zone].first_node + place.index[0], nodes[n]);
     EXPECT_EQ(given[n], Vec3{});
-    if (c.mesh.patches[std::size_t(place.patch)].name != "body") continue;
+    if (c.mesh.patches[place.patch].name != "body") continue;
     ++prescribed;
     given[n] = displacement(turn, c.mesh.coordinates[nodes[n]]);
   }

@@ -23,7 +23,7 @@ void check(int status) {
 void write_polyhedra(std::string const& path, Mesh const& mesh, bool parents_only) {
   auto const topology = make_topology(mesh);
   std::vector<cgsize_t> nodes, node_start{0}, parents_left, parents_right;
-  std::vector<std::vector<cgsize_t>> faces_of(std::size_t(mesh.n_elements()));
+  std::vector<std::vector<cgsize_t>> faces_of(mesh.n_elements());
   cgsize_t n_faces = 0;
   std::array<Index32, max_face_corners> room{};
   for (int const boundary : {0, 1})
@@ -33,8 +33,8 @@ void write_polyhedra(std::string const& path, Mesh const& mesh, bool parents_onl
         if ((neighbours[s] < 0) != (boundary == 1) || (boundary == 0 && neighbours[s] < e)) continue;
         for (Index32 const n : side_nodes(mesh, e, int(s), room)) nodes.push_back(n + 1);
         node_start.push_back(cgsize_t(nodes.size()));
-        faces_of[std::size_t(e)].push_back(++n_faces);
-        if (boundary == 0) faces_of[std::size_t(neighbours[s])].push_back(-n_faces);
+        faces_of[e].push_back(++n_faces);
+        if (boundary == 0) faces_of[neighbours[s]].push_back(-n_faces);
         parents_left.push_back(e + 1000);
         parents_right.push_back(boundary == 0 ? neighbours[s] + 1000 : 0);
       }
@@ -159,7 +159,7 @@ TEST(Polyhedra, ThatDoNotCloseAreRefused) {
   auto const other = p.faces[p.first_face[0] + 1];
   for (Index32 const n : other)
     if (std::find(face.begin(), face.end(), n) == face.end()) {
-      p.faces.item[std::size_t(p.faces.first[std::size_t(p.first_face[0])])] = n;
+      p.faces.item[p.faces.first[p.first_face[0]]] = n;
       break;
     }
   std::string const said = message_of<MeshError>([&] { check_mesh(mesh); });
@@ -230,7 +230,7 @@ TEST(Polyhedra, AreWrittenAsTheStandardHasThem) {
     EXPECT_EQ(type, s == 0 ? CGNS_ENUMV(NGON_n) : CGNS_ENUMV(NFACE_n));
     cgsize_t size = 0;
     check(cg_ElementDataSize(file, 1, 1, s + 1, &size));
-    std::vector<cgsize_t> items(std::size_t(size), 0), offsets(std::size_t(last[s] - first[s] + 2));
+    std::vector<cgsize_t> items(size, 0), offsets(std::size_t(last[s] - first[s] + 2));
     check(cg_poly_elements_read(file, 1, 1, s + 1, items.data(), offsets.data(), nullptr));
     for (std::size_t n = 0; n + 1 < offsets.size(); ++n)
       lists[s].emplace_back(items.begin() + offsets[n], items.begin() + offsets[n + 1]);

@@ -28,22 +28,22 @@ struct Solid {
   std::vector<std::vector<int>> face;
 
   [[nodiscard]] int n_faces() const { return int(face.size()); }
-  [[nodiscard]] int n_corners(int f) const { return int(face[std::size_t(f)].size()); }
-  [[nodiscard]] Vec3 at(int f, int k) const { return point[std::size_t(face[std::size_t(f)][std::size_t(k)])]; }
+  [[nodiscard]] int n_corners(int f) const { return int(face[f].size()); }
+  [[nodiscard]] Vec3 at(int f, int k) const { return point[face[f][k]]; }
 
   /// Adds the face through all points of a plane, in order around its outward normal.
   void add_face(Vec3 const& normal, double height) {
     std::vector<int> on;
     Vec3 middle;
     for (int p = 0; p < int(point.size()); ++p)
-      if (std::abs(dot(point[std::size_t(p)], normal) - height) < 1e-12) {
+      if (std::abs(dot(point[p], normal) - height) < 1e-12) {
         on.push_back(p);
-        middle += point[std::size_t(p)];
+        middle += point[p];
       }
     middle = (1.0 / double(on.size())) * middle;
-    Vec3 const u = point[std::size_t(on[0])] - middle, v = cross(normal, u);
+    Vec3 const u = point[on[0]] - middle, v = cross(normal, u);
     auto const angle = [&](int p) {
-      Vec3 const d = point[std::size_t(p)] - middle;
+      Vec3 const d = point[p] - middle;
       return std::atan2(dot(d, v) / norm(v), dot(d, u) / norm(u));
     };
     std::sort(on.begin(), on.end(), [&](int a, int b) { return angle(a) < angle(b); });
@@ -214,7 +214,7 @@ TEST(PolyhedronQuality, ConcaveElementsBesidePolyhedraAreWhatTheirPyramidsAre) {
   Index element = -1;
   Vec3 corner, inwards;
   for (Index e = 0; e < mixed.n_elements() && element < 0; ++e) {
-    if (mixed.elements.type[std::size_t(e)] != ElementType::hexahedron) continue;
+    if (mixed.elements.type[e] != ElementType::hexahedron) continue;
     Vec3 middle;
     for (Index32 const n : mixed.elements.corners(e)) middle += 0.125 * mixed.coordinates[n];
     Vec3 const out{middle.x < 1 ? -0.5 : 0.5, middle.y < 1 ? -0.5 : 0.5, middle.z < 1 ? -0.5 : 0.5}, at = middle + out;
@@ -346,7 +346,7 @@ Mesh periods(int periods, RigidTransform const& to_next) {
     Vec3 const within = to_next.rotation.m[1][1] < 1
                             ? rotation_about({0, 0, 0}, {1, 0, 0}, share * std::numbers::pi / 6)(here)
                             : here + share * (next - here);
-    return to[std::size_t(p[2] / per_period)](within);
+    return to[p[2] / per_period](within);
   });
 }
 
@@ -385,10 +385,10 @@ TEST(FaceQuality, BehindPeriodicSidesIsTheNextPeriod) {
         close_around(one, to_next, from_donors);
         for (Measure const measure : {Measure::non_orthogonality_deg, Measure::face_skewness}) {
           auto const all = faces_of(many, many.coordinates, measure), found = faces_of(one, one.coordinates, measure);
-          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[std::size_t(e)], all[std::size_t(n + e)], 1e-9) << e;
+          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[e], all[n + e], 1e-9) << e;
           // Wherever the mesh as a whole has gone.
           auto const shifted = faces_of(one, moved_by(one, [](Vec3 const& p) { return p + Vec3{1, -2, 3}; }), measure);
-          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[std::size_t(e)], shifted[std::size_t(e)], 1e-9) << e;
+          for (Index e = 0; e < n; ++e) ASSERT_NEAR(found[e], shifted[e], 1e-9) << e;
         }
         EXPECT_NE(open, faces_of(one, one.coordinates, Measure::non_orthogonality_deg));
       }

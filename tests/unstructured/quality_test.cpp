@@ -190,7 +190,7 @@ TEST(UnstructuredQuality, ElementsNumberedInsideOutAreFoundAndNotRepaired) {
   auto const before = mesh.elements.nodes.item;
   EXPECT_TRUE(negative_elements(mesh).empty());
   for (Index const e : {4, 9}) {
-    auto const first = std::size_t(mesh.elements.nodes.first[std::size_t(e)]);
+    auto const first = std::size_t(mesh.elements.nodes.first[e]);
     std::swap(mesh.elements.nodes.item[first + 1], mesh.elements.nodes.item[first + 2]);
     std::swap(mesh.elements.nodes.item[first + 4], mesh.elements.nodes.item[first + 5]);
   }
@@ -211,8 +211,8 @@ TEST(UnstructuredQuality, ElementsNumberedInsideOutAreFoundAndNotRepaired) {
 
 /// Numbers an element the other way round.
 void reverse(Mesh& mesh, Index e) {
-  auto const first = mesh.elements.nodes.item.begin() + mesh.elements.nodes.first[std::size_t(e)];
-  std::reverse(first, first + n_corners(mesh.elements.type[std::size_t(e)]));
+  auto const first = mesh.elements.nodes.item.begin() + mesh.elements.nodes.first[e];
+  std::reverse(first, first + n_corners(mesh.elements.type[e]));
 }
 
 // Quadrilaterals one way and triangles the other, as hybrid meshes in 2-D are.
@@ -220,7 +220,7 @@ TEST(UnstructuredQuality, AFlippedElementIsInvertedAndAHealedOneIsSoundHoweverEl
   for (int const way : {0, 1, 2, 3}) {
     auto mesh = flat_box(6, 5, 2);
     for (Index e = 0; e < mesh.n_elements(); ++e) {
-      bool const triangle = mesh.elements.type[std::size_t(e)] == ElementType::triangle;
+      bool const triangle = mesh.elements.type[e] == ElementType::triangle;
       if ((way == 1 && triangle) || (way == 2 && !triangle) || (way == 3 && e % 3 == 1)) reverse(mesh, e);
     }
     Prepared const p(mesh);
@@ -267,9 +267,9 @@ TEST(UnstructuredQuality, SignsOfNumberingAreThoseThatEachElementWasGivenInEvery
       bool const turned = e % 5 < 2;
       expected.push_back(turned ? -1 : 1);
       if (!turned) continue;
-      auto const first = std::size_t(mesh.elements.nodes.first[std::size_t(e)]);
+      auto const first = std::size_t(mesh.elements.nodes.first[e]);
       auto* const n = mesh.elements.nodes.item.data() + first;
-      switch (mesh.elements.type[std::size_t(e)]) {
+      switch (mesh.elements.type[e]) {
         case ElementType::tetrahedron: std::swap(n[0], n[1]); break;
         case ElementType::prism:
           std::swap(n[0], n[1]);
@@ -316,10 +316,10 @@ TEST(UnstructuredQuality, FlatElementsOfEveryTypeAreNeitherInvertedNorSound) {
 TEST(UnstructuredQuality, FlatCellsTurnedByLittleAreFlatBeforeInBlocksAndElements) {
   // A collapsed tip: the nodes of the last plane lie in the one before it, half a cell aside, so that no edge is short.
   Mesh structured = unit_box({10, 9, 5});
-  std::vector<double> share(std::size_t(structured.n_nodes()));
+  std::vector<double> share(structured.n_nodes());
   for (Index n = 0; n < structured.n_nodes(); ++n) {
     Vec3 const x = structured.coordinates[n];
-    share[std::size_t(n)] = x.z / 5;
+    share[n] = x.z / 5;
     if (x.z == 5) structured.coordinates.set(n, {x.x + 0.5, x.y, 4});
   }
   // Pitched about the middle of the tip, less and less towards the other end.
@@ -327,8 +327,7 @@ TEST(UnstructuredQuality, FlatCellsTurnedByLittleAreFlatBeforeInBlocksAndElement
     Coordinates out(structured.n_nodes());
     for (Index n = 0; n < out.size(); ++n) {
       Vec3 const x = structured.coordinates[n];
-      double const angle = share[std::size_t(n)] * degrees * std::acos(-1.0) / 180, c = std::cos(angle),
-                   s = std::sin(angle);
+      double const angle = share[n] * degrees * std::acos(-1.0) / 180, c = std::cos(angle), s = std::sin(angle);
       out.set(n, {5 + c * (x.x - 5) + s * (x.z - 4), x.y, 4 - s * (x.x - 5) + c * (x.z - 4)});
     }
     return out;

@@ -57,8 +57,8 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
   // The coil is in both zones, though the file does not say that they touch.
   auto const touching = undeclared_connections(mesh, 1e-6 * mesh.size());
   ASSERT_EQ(touching.size(), 1u);
-  EXPECT_EQ(mesh.patches[std::size_t(touching[0].patch)].name, "Default 1 Side FluidZone Part 1");
-  EXPECT_EQ(mesh.patches[std::size_t(touching[0].other)].name, "Default 1 Side SolidZone Part 2");
+  EXPECT_EQ(mesh.patches[touching[0].patch].name, "Default 1 Side FluidZone Part 1");
+  EXPECT_EQ(mesh.patches[touching[0].other].name, "Default 1 Side SolidZone Part 2");
   // Volume and surface agree, zone by zone (Gauss).
   UnstructuredQualityInput<Kokkos::HostSpace> input;
   input.coordinates = views(mesh.coordinates);
@@ -68,7 +68,7 @@ TEST_P(RealCoil, IsReadWholeAndClosed) {
     double sum = 0, flux = 0;
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) sum += volumes(e);
     for (Index f = 0; f < topology.boundary.size(); ++f) {
-      Index const e = topology.boundary.element[std::size_t(f)];
+      Index const e = topology.boundary.element[f];
       if (e < zone.first_element || e >= zone.first_element + zone.n_elements) continue;
       auto const n = topology.boundary.nodes[f];
       auto const x = [&](std::size_t k) { return mesh.coordinates[n[k]]; };

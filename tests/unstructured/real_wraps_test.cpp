@@ -41,9 +41,9 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   BoundaryFacePatches const face_patches = find_face_patches(mesh, topology);
   std::vector<CsrGraph> walls(1);
   for (Index f = 0; f < topology.boundary.size(); ++f) {
-    int const p = face_patches.patch[std::size_t(f)];
+    int const p = face_patches.patch[f];
     if (p < 0) continue;
-    Patch const& patch = mesh.patches[std::size_t(p)];
+    Patch const& patch = mesh.patches[p];
     if (patch.name == real.wall || to_string(patch.kind) == real.wall) walls[0].add(topology.boundary.nodes[f]);
   }
   ASSERT_GT(walls[0].size(), 0);
@@ -52,11 +52,11 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   options.tube = real.tube;
   gridmorph::Wrap const wrap = make_wrap({}, mesh, walls, options);
   EXPECT_EQ(bool(wrap.tube), real.tube) << wrap.note;
-  std::vector<char> is_wall(std::size_t(mesh.n_nodes()), 0);
+  std::vector<char> is_wall(mesh.n_nodes(), 0);
   double lowest = 1e300;
   for (Index32 const n : walls[0].item) {
     ASSERT_TRUE(wrap.contains(mesh.coordinates[n]));
-    is_wall[std::size_t(n)] = 1;
+    is_wall[n] = 1;
     lowest = std::min(lowest, mesh.coordinates[n].z);
   }
   Classification const regions = classify({}, mesh, wrap);
@@ -64,10 +64,10 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   EXPECT_GT(regions.n_far, mesh.n_elements() / 10);
   std::vector<Index32> far;
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
-    if (is_wall[std::size_t(n)] != 0) {
-      EXPECT_EQ(regions.near[std::size_t(n)], 1);
+    if (is_wall[n] != 0) {
+      EXPECT_EQ(regions.near[n], 1);
     }
-    if (regions.near[std::size_t(n)] == 0) far.push_back(Index32(n));
+    if (regions.near[n] == 0) far.push_back(Index32(n));
   }
 
   Background background = make_background(wrap);
@@ -82,7 +82,7 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
       rotation_about({0, 0, lowest}, flat ? Vec3{0, 0, 1} : Vec3{1, 0, 0}, real.turn_deg * std::numbers::pi / 180);
   std::vector<Vec3> boundary(prepared.plan().boundary_nodes.size());
   for (std::size_t n = 0; n < nodes.position.size(); ++n)
-    boundary[std::size_t(nodes.boundary_node[n])] = turn(nodes.position[n]) - nodes.position[n];
+    boundary[nodes.boundary_node[n]] = turn(nodes.position[n]) - nodes.position[n];
   Morphed const m = run_plan(Kokkos::DefaultHostExecutionSpace(), background.mesh, prepared.plan(), boundary);
   // No node of the far field moves further than the wrap.
   double largest = 0;
@@ -90,8 +90,8 @@ TEST_P(RealWrap, HoldsTheWallsAndItsBackgroundMeshCarriesATurn) {
   EXPECT_GT(largest, 0);
   for (Index r = 0; r < rows.rows.size(); ++r) {
     Vec3 u;
-    for (Index k = rows.rows.first[std::size_t(r)]; k < rows.rows.first[std::size_t(r) + 1]; ++k)
-      u += double(rows.rows.weight[std::size_t(k)]) * m.displacement[rows.rows.item[std::size_t(k)]];
+    for (Index k = rows.rows.first[r]; k < rows.rows.first[r + 1]; ++k)
+      u += double(rows.rows.weight[k]) * m.displacement[rows.rows.item[k]];
     ASSERT_LT(norm(u), 1.2 * largest);
   }
 

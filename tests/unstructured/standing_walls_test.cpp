@@ -44,10 +44,9 @@ Mesh pins(int count) {
       for (int i = 0; i < around; ++i) {
         double const s = -1 + 2.0 * (i % side) / side;
         std::array<std::array<double, 2>, 4> const square{{{s, -1}, {1, s}, {-s, 1}, {-1, -s}}};
-        auto const [px, py] = square[std::size_t(i / side)];
+        auto const [px, py] = square[i / side];
         double const r = std::hypot(px, py);
-        row[std::size_t(i)] =
-            node(pin + (1 - t) * 0.25 * px / r + t * 0.5 * px, (1 - t) * 0.25 * py / r + t * 0.5 * py);
+        row[i] = node(pin + (1 - t) * 0.25 * px / r + t * 0.5 * px, (1 - t) * 0.25 * py / r + t * 0.5 * py);
       }
     }
   }
@@ -56,7 +55,7 @@ Mesh pins(int count) {
   for (std::size_t n = 0; n < points.size(); ++n) mesh.coordinates.set(Index(n), points[n]);
   std::map<std::string, CsrGraph> faces;
   for (int pin = 0; pin < count; ++pin) {
-    auto const& g = grid[std::size_t(pin)];
+    auto const& g = grid[pin];
     for (std::size_t i = 0; i < around; ++i) {
       std::size_t const j = (i + 1) % around;
       for (std::size_t l = 0; l + 1 < g.size(); ++l) {

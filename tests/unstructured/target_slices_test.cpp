@@ -215,8 +215,7 @@ TEST(TargetSlices, ATipGoesAlongWithItsRim) {
   Vec3 const tip = wing(0.03, 1) + 0.5 * (wing(0.5, 1) - wing(0.03, 1));
   capped.coordinates.set(middle, tip);
   capped.coordinates.set(middle + 1, tip + Vec3{0, 0, 0.2});
-  for (Index e = 0; e < mesh.n_elements(); ++e)
-    capped.add_element(mesh.elements.type[std::size_t(e)], mesh.elements.nodes[e]);
+  for (Index e = 0; e < mesh.n_elements(); ++e) capped.add_element(mesh.elements.type[e], mesh.elements.nodes[e]);
   capped.patches = mesh.patches;
   for (std::size_t k = 0; k < rim.size(); ++k) {
     std::array const face{rim[k], rim[(k + 1) % rim.size()], middle};
@@ -255,7 +254,7 @@ TEST(TargetSlices, TwoWingsAreRefused) {
     for (Index e = 0; e < one.n_elements(); ++e) {
       nodes.clear();
       for (Index32 const n : one.elements.nodes[e]) nodes.push_back(n + Index32(w * one.n_nodes()));
-      two.elements.type.push_back(one.elements.type[std::size_t(e)]);
+      two.elements.type.push_back(one.elements.type[e]);
       two.elements.nodes.add(nodes);
     }
   }
@@ -286,7 +285,7 @@ BothWays both_ways(Mesh const& blocks, std::string const& family, Axis const& ax
     TargetSection& section = target->sections.emplace_back();
     section.name = std::to_string(k);
     for (std::size_t n = 0; n + 1 < rows[k].size(); ++n)
-      section.points.push_back(map(joined.surface.points[std::size_t(rows[k][n])]));
+      section.points.push_back(map(joined.surface.points[rows[k][n]]));
   }
   TargetRule rule;
   rule.target = target;

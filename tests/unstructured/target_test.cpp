@@ -55,7 +55,7 @@ Asked asked(Case const& c, std::string const& patch, Rule const& rule) {
   for (Index32 const n : c.nodes_of(patch)) {
     auto const at = std::lower_bound(prepared.plan.known.begin(), prepared.plan.known.end(), n);
     out.nodes.push_back(n);
-    out.u.push_back(all[std::size_t(at - prepared.plan.known.begin())]);
+    out.u.push_back(all[at - prepared.plan.known.begin()]);
   }
   return out;
 }
@@ -137,7 +137,7 @@ TEST(UnstructuredTarget, LinesOfA2DMeshGoToAProfileByArcLength) {
   section.sections.push_back({"profile", around});
   around.push_back(around.front());
   auto const strip = [&](double s, double t) {
-    Vec3 p = around[std::size_t(std::lround(s * double(around.size() - 1)))];
+    Vec3 p = around[std::lround(s * double(around.size() - 1))];
     p.z = 0.3 * t;
     return p;
   };

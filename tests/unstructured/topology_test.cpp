@@ -80,8 +80,7 @@ TEST(UnstructuredTopology, PyramidsMeetTheirNeighbours) {
   for (int f = 0; f < 6; ++f) {
     std::array<Index32, 5> pyramid{};
     // Faces of a hexahedron point outwards; seen from inside they run the other way.
-    for (int c = 0; c < 4; ++c)
-      pyramid[std::size_t(3 - c)] = sids[std::size_t(face_corner(ElementType::hexahedron, f, c))];
+    for (int c = 0; c < 4; ++c) pyramid[3 - c] = sids[face_corner(ElementType::hexahedron, f, c)];
     pyramid[4] = 8;
     mesh.add_element(ElementType::pyramid, pyramid);
   }
@@ -185,13 +184,13 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
     // The only neighbours across the cut have a face whose four nodes coincide.
     int across = 0;
     for (Index f = 0; f < topology.boundary.size(); ++f) {
-      Index32 const behind = topology.boundary.across[std::size_t(f)];
+      Index32 const behind = topology.boundary.across[f];
       if (behind < 0) continue;
       ++across;
-      EXPECT_EQ(topology.boundary.across[std::size_t(behind)], f);
-      EXPECT_EQ(topology.boundary.connection[std::size_t(f)] ^ 1, topology.boundary.connection[std::size_t(behind)]);
-      Index32 const other = topology.boundary.element[std::size_t(behind)];
-      EXPECT_NE(mesh.zone_of_element(other), mesh.zone_of_element(topology.boundary.element[std::size_t(f)]));
+      EXPECT_EQ(topology.boundary.across[behind], f);
+      EXPECT_EQ(topology.boundary.connection[f] ^ 1, topology.boundary.connection[behind]);
+      Index32 const other = topology.boundary.element[behind];
+      EXPECT_NE(mesh.zone_of_element(other), mesh.zone_of_element(topology.boundary.element[f]));
       for (Index32 const n : topology.boundary.nodes[f]) {
         auto const corners = mesh.elements.corners(other);
         EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
@@ -202,10 +201,10 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
     auto const owner = coincident_nodes(mesh);
     int paired = 0;
     for (Index32 n = 0; n < Index32(owner.size()); ++n) {
-      if (owner[std::size_t(n)] == n) continue;
+      if (owner[n] == n) continue;
       ++paired;
-      EXPECT_LT(owner[std::size_t(n)], n);
-      EXPECT_LT(distance(mesh.coordinates[n], mesh.coordinates[owner[std::size_t(n)]]), 1e-14);
+      EXPECT_LT(owner[n], n);
+      EXPECT_LT(distance(mesh.coordinates[n], mesh.coordinates[owner[n]]), 1e-14);
     }
     EXPECT_EQ(paired, 6 * 5);
   }
@@ -214,7 +213,7 @@ TEST(UnstructuredTopology, ConnectionsLeadToTheElementBehind) {
 TEST(UnstructuredTopology, PointsAreMatchedByPosition) {
   auto const mesh = to_hexahedra(two_zones({}, false));
   auto const& c = mesh.connections.front();
-  std::vector<Index32> all(std::size_t(mesh.zones[1].size()));
+  std::vector<Index32> all(mesh.zones[1].size());
   for (std::size_t n = 0; n < all.size(); ++n) all[n] = Index32(mesh.zones[1].first_node + Index(n));
   EXPECT_EQ(match_points(mesh.coordinates, c.nodes, all, 1e-9), c.donor_nodes);
   std::vector<Index32> const far{Index32(mesh.zones[0].first_node)};

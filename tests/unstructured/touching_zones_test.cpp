@@ -84,25 +84,25 @@ TEST(TouchingZones, ARuleForOneSideHoldsForBoth) {
 TEST(TouchingZones, PlanesThatSlideStayTwo) {
   TwoZones const t = two_zones(PatchKind::connection, 0);
   auto const place = nodes_at_one_place(t.mesh);
-  for (auto const& [a, b] : t.pairs) EXPECT_NE(place[std::size_t(a)], place[std::size_t(b)]);
+  for (auto const& [a, b] : t.pairs) EXPECT_NE(place[a], place[b]);
 }
 
 TEST(TouchingZones, NodesFartherApartThanTheToleranceStayTwo) {
   TwoZones const t = two_zones(PatchKind::other, 1e-5);
   auto const place = nodes_at_one_place(t.mesh);
-  for (auto const& [a, b] : t.pairs) EXPECT_NE(place[std::size_t(a)], place[std::size_t(b)]);
+  for (auto const& [a, b] : t.pairs) EXPECT_NE(place[a], place[b]);
 }
 
 // Both sides of a mixing plane between rows.
 TEST(TouchingZones, NodesOfDifferentGroupsStayTwo) {
   TwoZones const t = two_zones(PatchKind::other, 0);
-  std::vector<int> group(std::size_t(t.mesh.n_nodes()), 0);
-  for (auto const& [left, right] : t.pairs) group[std::size_t(left)] = 1;
+  std::vector<int> group(t.mesh.n_nodes(), 0);
+  for (auto const& [left, right] : t.pairs) group[left] = 1;
   auto const place = nodes_at_one_place(HostInstance(), t.mesh, group);
-  for (auto const& [left, right] : t.pairs) EXPECT_NE(place[std::size_t(left)], place[std::size_t(right)]);
-  for (auto const& [left, right] : t.pairs) group[std::size_t(right)] = 1;
+  for (auto const& [left, right] : t.pairs) EXPECT_NE(place[left], place[right]);
+  for (auto const& [left, right] : t.pairs) group[right] = 1;
   auto const joined = nodes_at_one_place(HostInstance(), t.mesh, group);
-  for (auto const& [left, right] : t.pairs) EXPECT_EQ(joined[std::size_t(left)], joined[std::size_t(right)]);
+  for (auto const& [left, right] : t.pairs) EXPECT_EQ(joined[left], joined[right]);
 }
 
 }  // namespace

@@ -295,7 +295,7 @@ TEST_P(UnstructuredTranspose, IsTheDerivativeOfAFunctional) {
   Coordinates rate = random_vectors(5, at.boundary.size());
   auto const& plan = planned.prepared.plan;
   for (Index k = 0; k < rate.size(); ++k)
-    if (!std::binary_search(plan.driving.begin(), plan.driving.end(), plan.known[std::size_t(k)])) rate.set(k, {});
+    if (!std::binary_search(plan.driving.begin(), plan.driving.end(), plan.known[k])) rate.set(k, {});
   auto const displacements = [&](double h) {
     Coordinates b(at.boundary.size()), u(at.n_nodes);
     for (Index k = 0; k < b.size(); ++k) b.set(k, at.boundary[k] + h * rate[k]);

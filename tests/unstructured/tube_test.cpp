@@ -103,7 +103,7 @@ TEST(Tube, EndsWhereItsMeshDoes) {
     for (int j = 0; j + 1 < tube.sections(); ++j)
       for (int k = 0; k < tube.around; ++k) {
         // Middle of a bilinear face of the surface, a little moved inwards and outwards.
-        Vec3 const c0 = 0.5 * (tube.centre[std::size_t(j)] + tube.centre[std::size_t(j) + 1]);
+        Vec3 const c0 = 0.5 * (tube.centre[j] + tube.centre[j + 1]);
         Vec3 const p =
             0.25 * (tube.point(j, k) + tube.point(j, k + 1) + tube.point(j + 1, k) + tube.point(j + 1, k + 1));
         ASSERT_TRUE(tube.contains(p + 1e-6 * (c0 - p)));
@@ -172,7 +172,7 @@ TEST(OTypeBackground, CarriesTurnsOfLongBodiesWithoutTurningCellsOver) {
     double largest = 0;
     for (std::size_t n = 0; n < nodes.position.size(); ++n) {
       Vec3 const u = turn(nodes.position[n]) - nodes.position[n];
-      boundary[std::size_t(nodes.boundary_node[n])] = u;
+      boundary[nodes.boundary_node[n]] = u;
       largest = std::max({largest, std::abs(u.x), std::abs(u.y), std::abs(u.z)});
     }
     Morphed const m = run_plan(Kokkos::DefaultHostExecutionSpace(), background.mesh, prepared.plan(), boundary);
@@ -188,7 +188,7 @@ TEST(OTypeBackground, CarriesTurnsOfLongBodiesWithoutTurningCellsOver) {
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) {
-            Index const n = mesh.zones[std::size_t(patch.zone)].node({i, j, k});
+            Index const n = mesh.zones[patch.zone].node({i, j, k});
             Vec3 const x = mesh.coordinates[n];
             Vec3 const expected = patch.families.front() == "wrap" ? turn(x) - x : Vec3{};
             ASSERT_LT(norm(m.displacement[n] - expected), 1e-12 * mesh.size());
@@ -251,9 +251,9 @@ TEST(OTypeBackground, RowsReproduceLinearFieldsAtPointsOfTheFarField) {
   EXPECT_EQ(far.rows.target, nodes);
   for (Index r = 0; r < far.rows.size(); ++r) {
     Vec3 sum;
-    for (Index k = far.rows.first[std::size_t(r)]; k < far.rows.first[std::size_t(r) + 1]; ++k)
-      sum += double(far.rows.weight[std::size_t(k)]) * background.mesh.coordinates[far.rows.item[std::size_t(k)]];
-    ASSERT_LT(norm(sum - points[std::size_t(r)]), 2e-5) << r;
+    for (Index k = far.rows.first[r]; k < far.rows.first[r + 1]; ++k)
+      sum += double(far.rows.weight[k]) * background.mesh.coordinates[far.rows.item[k]];
+    ASSERT_LT(norm(sum - points[r]), 2e-5) << r;
   }
 }
 
@@ -278,7 +278,7 @@ TEST(Classification, OfATubeNamesEveryElementThatHasAPointInIt) {
       middle += (1.0 / double(corners.size())) * mesh.coordinates[n];
       inside += int(wrap.contains(mesh.coordinates[n]));
     }
-    Region const region = found.element[std::size_t(e)];
+    Region const region = found.element[e];
     ASSERT_EQ(region == Region::near, inside == int(corners.size()));
     if (inside > 0 || wrap.contains(middle)) {
       ASSERT_NE(region, Region::far);

@@ -167,7 +167,7 @@ struct Lines {
       for (int i = 0; i <= n; ++i) {
         Index32 const at = i + (n + 1) * line;
         x.set(at, {w * (2.0 * i / n - 1), double(line), 0});
-        if (i < n) edges[std::size_t(line)].add(std::array{at, at + 1});
+        if (i < n) edges[line].add(std::array{at, at + 1});
       }
   }
   /// C d / pi at height h over u.
@@ -473,7 +473,7 @@ TEST(TurningBody, ThatBendsTooKeepsItsColumnsUprightAndItsElements) {
   EXPECT_EQ(c.largest_miss(m), 0);
   auto const& plan = m.prepared.plan;
   for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
-    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
+    Index32 const n = plan.columns.node[k], w = plan.driving[plan.columns.root[k]];
     EXPECT_NEAR(distance(m.x[n], m.x[w]), distance(c.mesh.coordinates[n], c.mesh.coordinates[w]), 1e-12);
   }
   EXPECT_GT(c.quality(m.x)[Measure::minimum_angle_deg].min, 40);
@@ -492,8 +492,8 @@ TEST(TurningBody, DoesNotDependOnNumbers) {
   Mesh mesh = c.mesh;
   Random random(17);
   FileOrder order;
-  order.node.resize(std::size_t(mesh.n_nodes()));
-  order.element.resize(std::size_t(mesh.n_elements()));
+  order.node.resize(mesh.n_nodes());
+  order.element.resize(mesh.n_elements());
   std::iota(order.node.begin(), order.node.end(), 0);
   std::iota(order.element.begin(), order.element.end(), 0);
   random.shuffle(order.node);
@@ -539,15 +539,14 @@ TEST(StretchedBody, TakesWhatIsAroundItAlongBeyondItsColumns) {
   EXPECT_EQ(c.inverted(m.x), 0);
   auto const& plan = m.prepared.plan;
   double largest_end = 0, largest_start = 0;
-  std::vector<double> longest(std::size_t(c.mesh.n_nodes()), 0);
+  std::vector<double> longest(c.mesh.n_nodes(), 0);
   for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
-    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
-    longest[std::size_t(w)] = std::max(longest[std::size_t(w)], distance(c.mesh.coordinates[n], c.mesh.coordinates[w]));
+    Index32 const n = plan.columns.node[k], w = plan.driving[plan.columns.root[k]];
+    longest[w] = std::max(longest[w], distance(c.mesh.coordinates[n], c.mesh.coordinates[w]));
   }
   for (std::size_t k = 0; k < plan.columns.node.size(); ++k) {
-    Index32 const n = plan.columns.node[k], w = plan.driving[std::size_t(plan.columns.root[k])];
-    double const before = distance(c.mesh.coordinates[n], c.mesh.coordinates[w]),
-                 share = before / longest[std::size_t(w)];
+    Index32 const n = plan.columns.node[k], w = plan.driving[plan.columns.root[k]];
+    double const before = distance(c.mesh.coordinates[n], c.mesh.coordinates[w]), share = before / longest[w];
     if (share == 1) largest_end = std::max(largest_end, distance(m.x[n], whole(c.mesh.coordinates[n])) / before);
     if (share < 0.05) largest_start = std::max(largest_start, std::abs(distance(m.x[n], m.x[w]) / before - 1));
   }

@@ -27,11 +27,11 @@ class PlainSweeps {
  public:
   PlainSweeps(Coordinates const& x, NodeGraph const& graph, std::vector<Index32> const& sources)
       : x_(x), graph_(graph), is_before_(x) {
-    state.source.assign(std::size_t(graph.size()), -1);
-    state.distance.assign(std::size_t(graph.size()), std::numeric_limits<double>::infinity());
+    state.source.assign(graph.size(), -1);
+    state.distance.assign(graph.size(), std::numeric_limits<double>::infinity());
     for (Index32 const s : sources) {
-      state.source[std::size_t(s)] = s;
-      state.distance[std::size_t(s)] = 0;
+      state.source[s] = s;
+      state.distance[s] = 0;
     }
     for (double nearest = 0; std::isfinite(nearest);) {
       double const reach = nearest * std::sqrt(1.4937);
@@ -39,7 +39,7 @@ class PlainSweeps {
       }
       nearest = std::numeric_limits<double>::infinity();
       for (Index32 n = 0; n < Index32(graph.size()); ++n)
-        if (state.source[std::size_t(n)] < 0) nearest = std::min(nearest, looked_around(state, n).second);
+        if (state.source[n] < 0) nearest = std::min(nearest, looked_around(state, n).second);
     }
     for (Index32 n = 0; n < Index32(graph.size()); ++n) descend(n);
   }
@@ -59,34 +59,34 @@ class PlainSweeps {
   }
 
   [[nodiscard]] Own looked_around(NearestSource const& before, Index32 n) const {
-    Own own{before.source[std::size_t(n)], before.distance[std::size_t(n)]};
+    Own own{before.source[n], before.distance[n]};
     for (Index32 const m : graph_.neighbours[n])
-      if (Index32 const s = before.source[std::size_t(m)]; s >= 0 && s != own.first) own = better(n, s, own);
+      if (Index32 const s = before.source[m]; s >= 0 && s != own.first) own = better(n, s, own);
     return own;
   }
 
   bool sweep(double reach) {
     NearestSource const before = state;
     for (Index32 n = 0; n < Index32(graph_.size()); ++n) {
-      if (before.distance[std::size_t(n)] == 0) continue;
+      if (before.distance[n] == 0) continue;
       Own const own = looked_around(before, n);
-      if (before.source[std::size_t(n)] < 0 && own.second > reach) continue;
-      state.source[std::size_t(n)] = own.first;
-      state.distance[std::size_t(n)] = own.second;
+      if (before.source[n] < 0 && own.second > reach) continue;
+      state.source[n] = own.first;
+      state.distance[n] = own.second;
     }
     return state.source != before.source;
   }
 
   void descend(Index32 n) {
-    Own own{state.source[std::size_t(n)], state.distance[std::size_t(n)]};
+    Own own{state.source[n], state.distance[n]};
     if (own.first < 0 || own.second == 0) return;
     for (Index32 before = -1; before != own.first;) {
       before = own.first;
       for (Index32 const m : graph_.neighbours[before])
-        if (state.distance[std::size_t(m)] == 0) own = better(n, m, own);
+        if (state.distance[m] == 0) own = better(n, m, own);
     }
-    state.source[std::size_t(n)] = own.first;
-    state.distance[std::size_t(n)] = own.second;
+    state.source[n] = own.first;
+    state.distance[n] = own.second;
   }
 
   Coordinates const& x_;
@@ -136,7 +136,7 @@ TEST(WallDistance, SourcesAreAboutTheNearestOnesWhereNothingIsBetween) {
   for (Index32 n = 0; n < Index32(mesh.n_nodes()); ++n) {
     double nearest = std::numeric_limits<double>::infinity();
     for (Index32 const s : bottom) nearest = std::min(nearest, distance(mesh.coordinates[n], mesh.coordinates[s]));
-    EXPECT_LE(found.distance[std::size_t(n)], nearest * 1.005) << n;
+    EXPECT_LE(found.distance[n], nearest * 1.005) << n;
   }
 }
 
@@ -145,8 +145,8 @@ TEST(WallDistance, WhatNoEdgeJoinsToASourceHasNone) {
   NodeGraph graph = make_node_graph(mesh, elements_of_nodes(mesh));
   NearestSource const found = nearest_source(mesh.coordinates, graph, {});
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
-    EXPECT_EQ(found.source[std::size_t(n)], -1);
-    EXPECT_EQ(found.distance[std::size_t(n)], std::numeric_limits<double>::infinity());
+    EXPECT_EQ(found.source[n], -1);
+    EXPECT_EQ(found.distance[n], std::numeric_limits<double>::infinity());
   }
 }
 

@@ -36,12 +36,12 @@ void expect_covered(Bodies const& bodies, Wrap const& wrap) {
 
 /// Cells that hang together through faces, from the first one on.
 Index connected_cells(Wrap const& wrap, bool inside) {
-  std::vector<char> seen(std::size_t(wrap.n_cells()), 0);
+  std::vector<char> seen(wrap.n_cells(), 0);
   std::vector<Index> stack;
   for (Index c = 0; c < wrap.n_cells() && stack.empty(); ++c)
-    if ((wrap.inside[std::size_t(c)] != 0) == inside) stack.push_back(c);
+    if ((wrap.inside[c] != 0) == inside) stack.push_back(c);
   Index count = 0;
-  if (!stack.empty()) seen[std::size_t(stack.back())] = 1;
+  if (!stack.empty()) seen[stack.back()] = 1;
   while (!stack.empty()) {
     Index3 const c = wrap.index(stack.back());
     stack.pop_back();
@@ -49,11 +49,11 @@ Index connected_cells(Wrap const& wrap, bool inside) {
     for (int axis = 0; axis < 3; ++axis)
       for (int const by : {-1, 1}) {
         Index3 next = c;
-        next[std::size_t(axis)] += by;
-        if (next[std::size_t(axis)] < 0 || next[std::size_t(axis)] >= wrap.cells(axis)) continue;
+        next[axis] += by;
+        if (next[axis] < 0 || next[axis] >= wrap.cells(axis)) continue;
         Index const n = wrap.cell(next);
-        if (seen[std::size_t(n)] != 0 || wrap.is_inside(next) != inside) continue;
-        seen[std::size_t(n)] = 1;
+        if (seen[n] != 0 || wrap.is_inside(next) != inside) continue;
+        seen[n] = 1;
         stack.push_back(n);
       }
   }
@@ -84,7 +84,7 @@ bool outermost_free(Wrap const& wrap) {
   for (Index n = 0; n < wrap.n_cells(); ++n) {
     Index3 const c = wrap.index(n);
     for (int a = 0; a < wrap.dimension; ++a)
-      if ((c[std::size_t(a)] == 0 || c[std::size_t(a)] == wrap.cells(a) - 1) && wrap.is_inside(c)) return false;
+      if ((c[a] == 0 || c[a] == wrap.cells(a) - 1) && wrap.is_inside(c)) return false;
   }
   return true;
 }
@@ -170,7 +170,7 @@ TEST(Wrap, OfABodyOnTheLimitOfTheMeshGoesBeyondItAndIsFull) {
   for (Index n = 0; n < mesh.n_nodes(); ++n) mesh.coordinates.z(n) = std::max(mesh.coordinates.z(n), 0.0);
   // The lower half of the nodes would be inside the body.
   for (Index n = 0; n < Index(bodies.points().size()); ++n)
-    if (bodies.points()[std::size_t(n)].z < -1e-9) mesh.coordinates.set(n, {4, 4, 0});
+    if (bodies.points()[n].z < -1e-9) mesh.coordinates.set(n, {4, 4, 0});
   Wrap const wrap = make_wrap({}, mesh, half.walls, {.offset = 0.1, .resolution = 10});
   EXPECT_TRUE(wrap.contains({0, 0, 0.05}));
   EXPECT_TRUE(wrap.contains({0.3, 0.2, 0.4}));
@@ -208,7 +208,7 @@ TEST(Wrap, AnswersForBoxesLikeALookAtEveryCell) {
     }
     bool expected = false;
     for (Index c = 0; c < wrap.n_cells(); ++c) {
-      if (wrap.inside[std::size_t(c)] == 0) continue;
+      if (wrap.inside[c] == 0) continue;
       LatticeBox const cell = wrap.box(wrap.index(c));
       bool overlap = true;
       for (std::size_t a = 0; a < 3; ++a) overlap = overlap && box.low[a] < cell.high[a] && cell.low[a] < box.high[a];
@@ -261,10 +261,10 @@ TEST(Classification, AgreesWithTheWrapElementByElement) {
     }
   Wrap const wrap = make_wrap({}, mesh, walls, {.offset = 1.25, .resolution = 6});
   Classification const found = classify({}, mesh, wrap);
-  std::vector<char> near(std::size_t(mesh.n_nodes()), 0);
+  std::vector<char> near(mesh.n_nodes(), 0);
   std::array<Index, 3> count{};
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    Region const region = found.element[std::size_t(e)];
+    Region const region = found.element[e];
     ++count[std::size_t(region)];
     int inside = 0;
     Vec3 centre;
@@ -281,7 +281,7 @@ TEST(Classification, AgreesWithTheWrapElementByElement) {
       EXPECT_FALSE(wrap.contains(centre));
     }
     if (region != Region::far)
-      for (Index32 const n : corners) near[std::size_t(n)] = 1;
+      for (Index32 const n : corners) near[n] = 1;
   }
   EXPECT_EQ(count[std::size_t(Region::near)], found.n_near);
   EXPECT_EQ(count[std::size_t(Region::partial)], found.n_partial);

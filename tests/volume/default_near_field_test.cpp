@@ -39,7 +39,7 @@ std::vector<double> line_across(PlanOptions const& options) {
 /// One up to some node, and linear from there to zero.
 void expect_rigid_to(int layers, std::vector<double> const& line) {
   for (int i = 0; i <= cells_across; ++i)
-    EXPECT_NEAR(line[std::size_t(i)], i <= layers ? 1 : double(cells_across - i) / (cells_across - layers), 1e-14) << i;
+    EXPECT_NEAR(line[i], i <= layers ? 1 : double(cells_across - i) / (cells_across - layers), 1e-14) << i;
 }
 
 TEST(DefaultNearField, IsAThirdOfTheCellsOfABlockThatRunsFromAMovingWallToABoundary) {

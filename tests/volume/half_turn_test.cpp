@@ -36,9 +36,9 @@ Mesh wing_in_ball(double mirror = 1) {
     auto const position = [=](Index3 const& p) {
       std::array<double, 3> q{};
       auto const along = [](int k) { return std::tan(std::numbers::pi / 4 * (2.0 * k / cells_of_edge - 1)); };
-      q[std::size_t(axis)] = side;
-      q[std::size_t((axis + 1) % 3)] = along(p[0]);
-      q[std::size_t((axis + 2) % 3)] = along(p[2]);
+      q[axis] = side;
+      q[(axis + 1) % 3] = along(p[0]);
+      q[(axis + 2) % 3] = along(p[2]);
       double const size = std::hypot(q[0], q[1], q[2]), growth = 1.4;
       double const h = 60 * (std::pow(growth, p[1]) - 1) / (std::pow(growth, cells_off_wing) - 1);
       double const lambda = h * (h + 2 * half_axis[1]);

@@ -50,20 +50,20 @@ TEST(OneCall, ACallerPrescribesTheDisplacementOfAPatch) {
   std::size_t on_inlet = 0, alone = 0;
   auto const places = plan.boundary_places();
   auto const is_inlet = [&](BoundaryPlace const& place) {
-    return mesh.patches[std::size_t(place.patch)].name.find("inlet") != std::string::npos;
+    return mesh.patches[place.patch].name.find("inlet") != std::string::npos;
   };
   std::vector<char> has_rule(nodes.size(), 0);
   for (BoundaryPlace const& place : places)
-    if (!is_inlet(place)) has_rule[std::size_t(place.boundary_node)] = 1;
+    if (!is_inlet(place)) has_rule[place.boundary_node] = 1;
   for (BoundaryPlace const& place : places) {
-    Zone const& zone = mesh.zones[std::size_t(place.zone)];
+    Zone const& zone = mesh.zones[place.zone];
     auto const n = std::size_t(place.boundary_node);
     Vec3 const x = mesh.coordinates[zone.node(place.index)];
     if (place.rotation * Vec3{1, 2, 3} == Vec3{1, 2, 3}) {
       EXPECT_LT(distance(x, mesh.coordinates[nodes[n]]), 1e-12);
     }
     if (!is_inlet(place)) continue;
-    EXPECT_TRUE(mesh.patches[std::size_t(place.patch)].range.contains(place.index));
+    EXPECT_TRUE(mesh.patches[place.patch].range.contains(place.index));
     ++on_inlet;
     if (has_rule[n] == 0) {
       ++alone;
@@ -82,7 +82,7 @@ TEST(OneCall, ACallerPrescribesTheDisplacementOfAPatch) {
     EXPECT_EQ(moved[nodes[n]], mesh.coordinates[nodes[n]] + given[n]) << describe_node(mesh, nodes[n]);
   for (BoundaryPlace const& place : places) {
     if (!is_inlet(place)) continue;
-    Index const node = mesh.zones[std::size_t(place.zone)].node(place.index);
+    Index const node = mesh.zones[place.zone].node(place.index);
     EXPECT_LT(distance(moved[node], mesh.coordinates[node] + push(mesh.coordinates[node])), 1e-12);
   }
 }

@@ -57,14 +57,14 @@ Outcome sector() {
 
 /// The stage of the last cell at each node, and whether any cell there has its turn at all.
 std::vector<std::array<int, 2>> range_of_stages_at_nodes(Mesh const& mesh, StagesOfCells const& cells) {
-  std::vector<std::array<int, 2>> out(std::size_t(mesh.n_nodes()), {1 << 20, -1});
+  std::vector<std::array<int, 2>> out(mesh.n_nodes(), {1 << 20, -1});
   std::size_t n = 0;
   for (Zone const& zone : mesh.zones)
     for (int k = 0; k + 1 < zone.extent[2]; ++k)
       for (int j = 0; j + 1 < zone.extent[1]; ++j)
         for (int i = 0; i + 1 < zone.extent[0]; ++i, ++n)
           for (int corner = 0; corner < 8; ++corner) {
-            auto& at = out[std::size_t(zone.node({i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)}))];
+            auto& at = out[zone.node({i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)})];
             at[0] = std::min(at[0], cells.stage[n]);
             at[1] = std::max(at[1], cells.stage[n]);
           }
@@ -100,8 +100,8 @@ TEST(StageByStage, NodesArriveWithTheStageOfTheirCellsAndNotBefore) {
     std::set<Index> const given(whole.plan().boundary_nodes.begin(), whole.plan().boundary_nodes.end());
     std::set<Index> on_interfaces;  // a node of another zone may have arrived before, so that only its own cells tell
     for (Interface1to1 const& face : whole.mesh.interfaces) {
-      Zone const& zone = whole.mesh.zones[std::size_t(face.zone)];
-      Zone const& donor = whole.mesh.zones[std::size_t(face.donor_zone)];
+      Zone const& zone = whole.mesh.zones[face.zone];
+      Zone const& donor = whole.mesh.zones[face.donor_zone];
       for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
         for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
           for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
@@ -112,14 +112,14 @@ TEST(StageByStage, NodesArriveWithTheStageOfTheirCellsAndNotBefore) {
     Index arrived = 0, waiting = 0;
     for (std::size_t s = 0; s < stopped.positions.size(); ++s)
       for (Index n = 0; n < whole.mesh.n_nodes(); ++n) {
-        auto const [first, last] = range[std::size_t(n)];
+        auto const [first, last] = range[n];
         if (last <= int(s)) {
           ASSERT_TRUE(same_bits(stopped.positions[s][n], whole.morphed.position[n])) << describe_node(whole.mesh, n);
           ++arrived;
         } else if (first > int(s) && given.count(n) == 0 && on_interfaces.count(n) == 0) {
           bool const on_boundary = [&] {  // known nodes are listed once however many zones share them
             for (Patch const& patch : whole.mesh.patches) {
-              Zone const& zone = whole.mesh.zones[std::size_t(patch.zone)];
+              Zone const& zone = whole.mesh.zones[patch.zone];
               if (n < zone.first_node || n >= zone.first_node + zone.size()) continue;
               Index const m = n - zone.first_node;
               if (patch.range.contains({int(m % zone.extent[0]), int(m / zone.extent[0] % zone.extent[1]),
@@ -169,7 +169,7 @@ TEST(StageByStage, DirectionsAreThoseOfTheZoneHoweverItIsTurned) {
     ASSERT_EQ(whole.plan().stages.size(), 1U);
     StagesOfCells const cells = stages_of_cells(whole.mesh, whole.plan());
     for (int const d : cells.direction)
-      ASSERT_EQ(whole.mesh.zones[0].extent[std::size_t(d) - 1], whole.plan().stages[0].lines.chains[0].n_s);
+      ASSERT_EQ(whole.mesh.zones[0].extent[d - 1], whole.plan().stages[0].lines.chains[0].n_s);
   }
 }
 

@@ -58,8 +58,7 @@ struct FarTurn {
 FarTurn far_turn(Plan const& plan) {
   for (Stage const& stage : plan.stages)
     for (kernels::Chain const& chain : stage.lines.chains)
-      if (chain.turn == kernels::TurnLaw::far)
-        return {stage.lines.end_pivots[std::size_t(chain.first_end_value)], chain.turn_reach};
+      if (chain.turn == kernels::TurnLaw::far) return {stage.lines.end_pivots[chain.first_end_value], chain.turn_reach};
   throw std::logic_error("no chain takes the turn on");
 }
 
@@ -84,7 +83,7 @@ TEST(TurnedNearField, HandsItsTurnOnAboutTheCentreOfTheBody) {
       for (int j = layers; j <= last; ++j) {
         Index const n = zone.node({i, j, k});
         Vec3 const x = r.mesh.coordinates[n];
-        double const t = length[std::size_t(j - layers)] / length.back();
+        double const t = length[j - layers] / length.back();
         double const f = 1 - (growth(reach * t) - 1) / (growth(reach) - 1);
         double const angle = 2 * std::atan2(f * std::sin(turn / 2), 1 - f * (1 - std::cos(turn / 2)));
         Vec3 const u = (1 - t) * (about_z(centre) - centre) + rotation_about(centre, {0, 0, 1}, angle)(x) - x;

@@ -39,7 +39,7 @@ class ContouredClearance : public WheelTest {
     write_mesh(folder.file("plain.cgns"), plain);
     for (auto const& patch : plain.patches) {
       if (patch.families.front() != "tip") continue;
-      auto const& zone = plain.zones[std::size_t(patch.zone)];
+      auto const& zone = plain.zones[patch.zone];
       for (int k = patch.range.begin[2]; k < patch.range.end[2]; ++k)
         for (int j = patch.range.begin[1]; j < patch.range.end[1]; ++j)
           for (int i = patch.range.begin[0]; i < patch.range.end[0]; ++i) tip.push_back(zone.node({i, j, k}));

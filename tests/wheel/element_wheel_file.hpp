@@ -78,10 +78,10 @@ struct ElementWheelFile {
   /// Nodes that plain connections join are one here, so that a face between zones is met twice.
   [[nodiscard]] FaceCount count_faces() const {
     Mesh const mesh = read_mesh(path);
-    std::vector<Index> one(std::size_t(mesh.n_nodes()));
+    std::vector<Index> one(mesh.n_nodes());
     std::iota(one.begin(), one.end(), Index(0));
     auto const root = [&](Index n) {
-      while (one[std::size_t(n)] != n) n = one[std::size_t(n)];
+      while (one[n] != n) n = one[n];
       return n;
     };
     std::vector<std::vector<Index>> periodic;  // nodes of each side
@@ -90,7 +90,7 @@ struct ElementWheelFile {
       if (c.periodic) std::sort(periodic.back().begin(), periodic.back().end());
       for (std::size_t n = 0; n < c.nodes.size() && !c.periodic; ++n) {
         Index const a = root(c.nodes[n]), b = root(c.donor_nodes[n]);
-        one[std::size_t(std::max(a, b))] = std::min(a, b);
+        one[std::max(a, b)] = std::min(a, b);
       }
     }
     struct Side {
@@ -184,8 +184,8 @@ struct ElementWheelFile {
       EXPECT_EQ(set, CGNS_ENUMV(PointList));
       EXPECT_EQ(donor_set, CGNS_ENUMV(PointListDonor));
       EXPECT_EQ(donor_zone, CGNS_ENUMV(Unstructured));
-      out.nodes.resize(std::size_t(points));
-      out.donor_nodes.resize(std::size_t(donor_points));
+      out.nodes.resize(points);
+      out.donor_nodes.resize(donor_points);
       check_cgns(cg_conn_read(file, 1, z, c, out.nodes.data(), data, out.donor_nodes.data()));
       out.zone = zone.name;
       out.name = connection.data();

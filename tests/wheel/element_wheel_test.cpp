@@ -263,7 +263,7 @@ TEST_F(CascadeWheel, HasPatchesOfItsSidesAtTheEndsOfAPartAlone) {
   Mesh const part = read_mesh(folder.file("wheel.cgns"));
   std::vector<std::string> sides;
   for (auto const& patch : part.patches)
-    if (patch.name.ends_with("_side")) sides.push_back(part.zones[std::size_t(patch.zone)].name + " " + patch.name);
+    if (patch.name.ends_with("_side")) sides.push_back(part.zones[patch.zone].name + " " + patch.name);
   EXPECT_EQ(sides, (std::vector<std::string>{"passage_P01 lower_side", "passage_P03 upper_side"}));
 }
 
@@ -289,7 +289,7 @@ TEST_F(CascadeWheel, OfSecondOrderElementsHasTheSameBitsAmidEdges) {
   c.name = "sides";
   c.zone = c.donor_zone = 0;
   c.periodic = blocks.interfaces.front().periodic;
-  std::vector<Index32> all(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> all(mesh.n_nodes());
   std::iota(all.begin(), all.end(), Index32(0));
   auto const partner = match_points(mesh.coordinates, all, all, 1e-9, c.periodic);
   Index amid = 0;

@@ -64,7 +64,7 @@ class GuardedWheel : public WheelTest {
   void for_sides(Visit&& visit) const {
     for (auto const& face : mesh.interfaces) {
       if (!face.periodic) continue;
-      Zone const& zone = mesh.zones[std::size_t(face.zone)];
+      Zone const& zone = mesh.zones[face.zone];
       for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
         for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
           for (int i = face.range.begin[0]; i < face.range.end[0]; ++i)

@@ -50,7 +50,7 @@ twist_deg = )" +
   }
   /// A node of passage p, taken back to where the input stands.
   static Vec3 at(ElementWheelFile const& file, int p, Index n) {
-    return pitch().times(-p)(file.zones.at(name("passage", p)).at(std::size_t(n)));
+    return pitch().times(-p)(file.zones.at(name("passage", p)).at(n));
   }
   template <class Visit>
   void for_nodes(std::string const& patch, Visit&& visit) const {
@@ -109,7 +109,7 @@ TEST_P(PlaneWheel, OfDifferentBladesHasOnEveryBladeItsOwnMotion) {
       for_nodes("blade", [&](Index n) {
         // H mesh: on the lower side blade p, on the upper one the next.
         bool const upper = n >= mesh.n_nodes() / 2;
-        if (factor[std::size_t((p + (upper ? 1 : 0)) % n_blades)] != f) return;
+        if (factor[(p + (upper ? 1 : 0)) % n_blades] != f) return;
         worst = std::max(worst, distance(at(file, p, n), one[n]));
       });
   }
@@ -133,7 +133,7 @@ TEST_P(PlaneWheel, SharesInletAndExitBetweenTheBladesBesideThem) {
       for_nodes(end, [&](Index n) {
         Vec3 const x = mesh.coordinates[n];
         double const w = along(x) - along(mesh.coordinates[first]);
-        double const share = (1 - w) * factor[std::size_t(p)] + w * factor[std::size_t((p + 1) % n_blades)];
+        double const share = (1 - w) * factor[p] + w * factor[(p + 1) % n_blades];
         EXPECT_NEAR(along(at(file, p, n)) - along(x), share * whole, 1e-12) << end << p;
         EXPECT_NEAR(row.place(at(file, p, n)).first, row.place(x).first, 1e-13);
         EXPECT_NEAR(row.place(at(file, p, n)).second, row.place(x).second, 1e-13);
@@ -169,7 +169,7 @@ TEST_P(PlaneWheel, OfBlocksOneCellThickHasTheSameBoundaries) {
     Index const ni = blocks.zones[0].extent[0];
     double worst = 0, moved = 0;
     for (int p = 0; p < n_blades; ++p) {
-      Zone const& zone = made.zones[std::size_t(p)];
+      Zone const& zone = made.zones[p];
       ASSERT_EQ(zone.name, name("passage", p));
       for (Index const n : nodes) {
         Index const own = of_a_2d_base ? n : n % ni + 2 * ni * (n / ni);

@@ -67,7 +67,7 @@ surface = "plane"
   /// A node of passage p, shifted back.
   template <class File>
   static Vec3 at(File const& wheel, int p, Index n) {
-    return wheel.zones.at(name("passage", p)).at(std::size_t(n)) - Vec3{0, 0, p * cascade_pitch};
+    return wheel.zones.at(name("passage", p)).at(n) - Vec3{0, 0, p * cascade_pitch};
   }
   template <class Visit>
   void for_nodes(std::string const& family, Visit&& visit) const {
@@ -125,10 +125,10 @@ TEST_F(StraightRow, HasOnEveryBladeItsOwnMotion) {
   EXPECT_EQ(row.n_periodic(), 4);
   double worst = 0, apart = 0;
   for (int b = 0; b < 3; ++b) {
-    Mesh const one = morphed(formulas[std::size_t(b)]);
+    Mesh const one = morphed(formulas[b]);
     for (int p = 0; p < n_blades; ++p)
       for_nodes("blade", [&](Index n, int k) {
-        int const stands = blade_in[std::size_t((p + (k == 0 ? 0 : 1)) % n_blades)];
+        int const stands = blade_in[(p + (k == 0 ? 0 : 1)) % n_blades];
         double const gap = distance(at(row, p, n), one.coordinates[n]);
         (stands == b ? worst : apart) = std::max(stands == b ? worst : apart, gap);
       });
@@ -151,7 +151,7 @@ TEST_F(StraightRow, SharesLinearlyAlongThePitch) {
       for_nodes(family, [&](Index n, int k) {
         Index3 const ijk{family == "inlet" ? 0 : zone.extent[0] - 1, int(n / zone.extent[0]) % zone.extent[1], 0};
         double const w = (mesh.coordinates[n].z - mesh.coordinates[zone.node(ijk)].z) / cascade_pitch;
-        double const share = (1 - w) * factor[std::size_t(p)] + w * factor[std::size_t((p + 1) % n_blades)];
+        double const share = (1 - w) * factor[p] + w * factor[(p + 1) % n_blades];
         EXPECT_TRUE(k != 0 || w == 0);
         worst = std::max(worst, distance(at(row, p, n), mesh.coordinates[n] + Vec3{0, 0, 0.1 * share}));
       });
@@ -186,7 +186,7 @@ TEST_F(StraightRow, MovesInWavesOfAnyNumberOfItsBlades) {
       for (int p = 0; p < n_blades; ++p) {
         int const as = ((s + p * diameters) % n_blades + n_blades) % n_blades;
         for (Index n = 0; n < mesh.n_nodes(); ++n)
-          worst = std::max(worst, distance(at(steps[std::size_t(s)], p, n), at(steps[std::size_t(as)], 0, n)));
+          worst = std::max(worst, distance(at(steps[s], p, n), at(steps[as], 0, n)));
       }
     EXPECT_LT(worst, 1e-13 * size()) << diameters;
   }
@@ -334,12 +334,12 @@ TEST_P(PlaneRow, IsAPlaneMeshOfPassagesEachAsMorphed) {
   RowPitch const pitch = round ? RowPitch(Axis{{0, 0, 0}, {0, 0, 1}}, n) : RowPitch(Vec3{1, 0, 0});
   std::array<double, n> const factor{1, 0.5, 0, -0.5, 1, 1, 0};
   for (int p = 0; p < n; ++p) {
-    folder.write("one.toml", case_of(0.06 * factor[std::size_t(p)]));
+    folder.write("one.toml", case_of(0.06 * factor[p]));
     ASSERT_LE(gridmorph("morph one.toml"), 1) << text("err");
     Mesh const one = read_mesh(folder.file("morphed.cgns"));
     for (Index f = 0; f < mesh.patches.front().faces.size(); ++f)
       for (Index32 const node : mesh.patches.front().faces[f]) {
-        Vec3 const back = pitch.times(-p)(row.coordinates[row.zones[std::size_t(p)].first_node + node]);
+        Vec3 const back = pitch.times(-p)(row.coordinates[row.zones[p].first_node + node]);
         EXPECT_LT(distance(back, one.coordinates[node]), 1e-13) << p;
       }
   }
@@ -362,12 +362,10 @@ TEST(StraightRows, LeaveOutElementsThatRepeatOthersAPitchAway) {
     beyond.push_back(Index32(mesh.n_nodes() + j));
     twice.coordinates.set(beyond.back(), mesh.coordinates[j * (across + 1) + across - 1] - Vec3{1, 0, 0});
   }
-  for (Index e = 0; e < mesh.n_elements(); ++e)
-    twice.add_element(mesh.elements.type[std::size_t(e)], mesh.elements.nodes[e]);
+  for (Index e = 0; e < mesh.n_elements(); ++e) twice.add_element(mesh.elements.type[e], mesh.elements.nodes[e]);
   for (int j = 0; j < high; ++j) {
     auto const at = [&](int k) { return Index32(k * (across + 1)); };
-    twice.add_element(ElementType::quadrilateral,
-                      std::array{beyond[std::size_t(j)], at(j), at(j + 1), beyond[std::size_t(j + 1)]});
+    twice.add_element(ElementType::quadrilateral, std::array{beyond[j], at(j), at(j + 1), beyond[j + 1]});
   }
   twice.patches = mesh.patches;
   twice.connections = mesh.connections;

@@ -197,7 +197,7 @@ std::map<std::string, std::vector<double>> series_x(std::string const& path, int
   check_cgns(cg_open(path.c_str(), CG_MODE_READ, &file));
   check_cgns(cg_biter_read(file, 1, name.data(), &steps));
   check_cgns(cg_goto(file, 1, "BaseIterativeData_t", 1, "end"));
-  times.resize(std::size_t(steps));
+  times.resize(steps);
   check_cgns(cg_array_read(1, times.data()));
   check_cgns(cg_nzones(file, 1, &zones));
   for (int z = 1; z <= zones; ++z) {
@@ -212,7 +212,7 @@ std::map<std::string, std::vector<double>> series_x(std::string const& path, int
     check_cgns(cg_goto(file, 1, "Zone_t", z, grid.c_str(), 0, "end"));
     int dimension = 0;
     check_cgns(cg_index_dim(file, 1, z, &dimension));
-    out[zone].resize(std::size_t(dimension == 3 ? size[0] * size[1] * size[2] : size[0]));
+    out[zone].resize(dimension == 3 ? size[0] * size[1] * size[2] : size[0]);
     check_cgns(cg_array_read(1, out[zone].data()));
   }
   check_cgns(cg_close(file));
@@ -231,7 +231,7 @@ TEST_F(WaveWheel, OneFileHoldsTheSameStepsAsOneFileEach) {
     std::vector<double> times;
     auto const x = series_x(folder.file("series.cgns"), s + 1, times);
     ASSERT_EQ(times.size(), 3U);
-    EXPECT_DOUBLE_EQ(times[std::size_t(s)], 0.5 * s / 3);
+    EXPECT_DOUBLE_EQ(times[s], 0.5 * s / 3);
     WheelFile const one = step(s + 1);
     ASSERT_EQ(x.size(), one.zones.size());
     for (auto const& [name, zone] : one.zones) EXPECT_EQ(zone.x, x.at(name)) << name;
@@ -248,9 +248,7 @@ TEST_F(WaveWheel, OneFileHoldsTheSameStepsAsOneFileEach) {
   EXPECT_EQ(list[1]["passages"][0]["min_determinant"], list[1]["passages"][4]["min_determinant"]);
   EXPECT_NE(list[1]["passages"][0]["largest_displacement"], list[1]["passages"][1]["largest_displacement"]);
   int const worst = json["sequence"]["worst_step"];
-  EXPECT_EQ(double(list[std::size_t(worst - 1)]["passages"]
-                       [std::size_t(int(list[std::size_t(worst - 1)]["worst_passage"]) - 1)]["min_determinant"]),
-            lowest);
+  EXPECT_EQ(double(list[worst - 1]["passages"][int(list[worst - 1]["worst_passage"]) - 1]["min_determinant"]), lowest);
   expect_all_in(this->text("out"), {"all steps", "the worst one", "90 deg", "series.cgns (3 steps)"});
 }
 
@@ -327,7 +325,7 @@ TEST_F(WaveWheel, BladesHaveRulesOfAnyKind) {
   WheelFile const wheel(folder.file("kinds.cgns"));
   wheel.expect_watertight();
   for (int p = 0; p < n_blades; ++p) {
-    auto const& kind = kinds[std::size_t(p)];
+    auto const& kind = kinds[p];
     folder.write("one.toml", head() + blade_rule(kind.keys.empty() ? nominal : kind.keys));
     ASSERT_EQ(gridmorph("morph one.toml"), 0) << kind.name << text("err");
     auto const alone = blade(read_mesh(folder.file("morphed.cgns")));
@@ -411,8 +409,8 @@ TEST_F(WaveWheel, EveryPassageHasTheRunningClearanceOfItsOwnBlade) {
     std::optional<WheelFile> file;
     if (!elements) blocks = &file.emplace(folder.file("w.cgns"));
     for (int p = 0; p < n_blades; ++p) {
-      auto const& tip = passages[std::size_t(p)]["clearances"][0];
-      double const grown = growth * factors[std::size_t(p)];
+      auto const& tip = passages[p]["clearances"][0];
+      double const grown = growth * factors[p];
       EXPECT_EQ(tip["name"], "rotor");
       EXPECT_NEAR(double(tip["before"]["smallest"]), 0, 1e-12);
       EXPECT_NEAR(double(tip["by_rule"]["smallest"]), -grown, 1e-12) << p;
@@ -447,7 +445,7 @@ TEST_F(WaveWheel, OverTimeTheSmallestClearanceIsToldWithItsStepAndPassage) {
   for (int s = 0; s < steps; ++s)
     for (int p = 0; p < n_blades; ++p) {
       double const now = -growth * std::sin(2 * pi * (double(s) / steps + double(p) / n_blades));
-      auto const& tip = list[std::size_t(s)]["passages"][std::size_t(p)]["clearances"][0];
+      auto const& tip = list[s]["passages"][p]["clearances"][0];
       EXPECT_NEAR(double(tip["by_rule"]["smallest"]), now, 1e-12) << s << " " << p;
       EXPECT_NEAR(double(tip["after"]["smallest"]), 0, 1e-12);
       if (now > least - 1e-12) continue;
@@ -506,7 +504,7 @@ TEST_F(WaveWheel, OfElementsMovesTheSameBlades) {
       ElementWheelFile const wheel(folder.file(fmt::format("wave_{}.cgns", s + 1)));
       wheel.expect_same_bits();
       for (int p = 0; p < n_blades; ++p)
-        EXPECT_LT(largest(blade(wheel, p), wanted[std::size_t(s * n_blades + p)]), 1e-9 * size()) << s << " " << p;
+        EXPECT_LT(largest(blade(wheel, p), wanted[s * n_blades + p]), 1e-9 * size()) << s << " " << p;
     }
   }
 }

@@ -87,8 +87,7 @@ class WheelTest : public ::testing::Test {
     for (auto const& zone : passage.zones) {
       FileZone const& copy = wheel.zones.at(name(zone.name, p));
       for (Index n = 0; n < zone.size(); ++n)
-        worst = std::max(
-            worst, distance(Turn(Axis{}, -p, of)(copy.at(std::size_t(n))), passage.coordinates[zone.first_node + n]));
+        worst = std::max(worst, distance(Turn(Axis{}, -p, of)(copy.at(n)), passage.coordinates[zone.first_node + n]));
     }
     return worst;
   }

@@ -37,9 +37,9 @@ BoundarySurface surface_of(Mesh const& mesh, Patch const& patch) {
   if (!is_box(patch)) {
     out.grid = {1, 1};
     for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
-      if (patch.range.extent(axis) > 1) (*out.grid)[std::size_t(d++)] = patch.range.extent(axis);
+      if (patch.range.extent(axis) > 1) (*out.grid)[d++] = patch.range.extent(axis);
   }
-  for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index n) { out.nodes.push_back(n); });
+  for_each_node(mesh.zones[patch.zone], patch.range, [&](Index n) { out.nodes.push_back(n); });
   return out;
 }
 
@@ -58,7 +58,7 @@ std::vector<int> inward_face(Mesh const& mesh, UnstructuredTopology const& topol
   if (line) normal = cross(across, mesh.coordinates[face[1]] - mesh.coordinates[face[0]]);
   for (std::size_t k = 0; k < face.size() && !line; ++k)
     normal += cross(mesh.coordinates[face[k]] - middle, mesh.coordinates[face[(k + 1) % face.size()]] - middle);
-  auto const element = mesh.elements.corners(topology.boundary.element[std::size_t(f)]);
+  auto const element = mesh.elements.corners(topology.boundary.element[f]);
   for (Index32 const n : element) centre += (1 / double(element.size())) * mesh.coordinates[n];
   if (dot(normal, centre - middle) < 0) std::reverse(place.begin(), place.end());
   return place;
@@ -97,13 +97,12 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
   if (plane_) across_ = size_ * plane_normal(mesh);
   auto const each_face = [&](auto&& visit) {
     for (Index f = 0; f < topology.boundary.size(); ++f)
-      if (int const p = face_patches.patch[std::size_t(f)]; p >= 0) visit(f, surfaces_[std::size_t(p)]);
+      if (int const p = face_patches.patch[f]; p >= 0) visit(f, surfaces_[p]);
   };
   each_face([&](Index f, BoundarySurface& surface) {
     auto const face = topology.boundary.nodes[f];
     surface.nodes.insert(surface.nodes.end(), face.begin(), face.end());
-    for (auto const& m :
-         side_middles(mesh, topology.boundary.element[std::size_t(f)], topology.boundary.side[std::size_t(f)]))
+    for (auto const& m : side_middles(mesh, topology.boundary.element[f], topology.boundary.side[f]))
       surface.nodes.push_back(m.node);
   });
   for (std::size_t p = 0; p < surfaces_.size(); ++p) {
@@ -118,15 +117,14 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
     std::iota(in_file_order.begin(), in_file_order.end(), 0);
     if (mesh.file_order.node.empty()) continue;
     std::sort(in_file_order.begin(), in_file_order.end(), [&, &list = nodes](int a, int b) {
-      return mesh.file_order.node[std::size_t(list[std::size_t(a)])] <
-             mesh.file_order.node[std::size_t(list[std::size_t(b)])];
+      return mesh.file_order.node[list[a]] < mesh.file_order.node[list[b]];
     });
   }
   // Both sides of a surface inside the mesh that are one patch are one surface.
   auto const is_back = [&](Index f) {
     auto const& behind = topology.boundary.behind;
-    Index32 const other = behind.empty() ? -1 : behind[std::size_t(f)];
-    return other >= 0 && other < f && face_patches.patch[std::size_t(other)] == face_patches.patch[std::size_t(f)];
+    Index32 const other = behind.empty() ? -1 : behind[f];
+    return other >= 0 && other < f && face_patches.patch[other] == face_patches.patch[f];
   };
   each_face([&](Index f, BoundarySurface& surface) {
     if (is_back(f)) return;
@@ -173,8 +171,8 @@ FacetList Boundary::facets(std::span<int const> patches) const {
 }
 
 bool Boundary::share_nodes(int patch, int other) const {
-  Patch const& a = mesh_.patches[std::size_t(patch)];
-  Patch const& b = mesh_.patches[std::size_t(other)];
+  Patch const& a = mesh_.patches[patch];
+  Patch const& b = mesh_.patches[other];
   if (a.zone != b.zone) return false;
   if (surface(patch).grid) return overlap(a.range, b.range);
   auto const& own = surface(patch).nodes;
@@ -187,25 +185,23 @@ std::vector<std::array<Index, 2>> Boundary::pairs(int connection) const {
   std::vector<std::array<Index, 2>> out;
   auto const n = int(mesh_.interfaces.size());
   if (connection < n) {
-    for_each_pair(mesh_, mesh_.interfaces[std::size_t(connection)], [&](Index own, Index donor) {
-      out.push_back({own, donor});
-    });
+    for_each_pair(mesh_, mesh_.interfaces[connection], [&](Index own, Index donor) { out.push_back({own, donor}); });
   } else {
-    Connection const& c = mesh_.connections[std::size_t(connection - n)];
+    Connection const& c = mesh_.connections[connection - n];
     for (std::size_t k = 0; k < c.nodes.size(); ++k) out.push_back({c.nodes[k], c.donor_nodes[k]});
   }
   return out;
 }
 
 bool Boundary::touches(int connection, int patch) const {
-  Patch const& p = mesh_.patches[std::size_t(patch)];
+  Patch const& p = mesh_.patches[patch];
   auto const n = int(mesh_.interfaces.size());
   if (connection < n) {
-    Interface1to1 const& i = mesh_.interfaces[std::size_t(connection)];
+    Interface1to1 const& i = mesh_.interfaces[connection];
     return (p.zone == i.zone && overlap(p.range, i.range)) ||
            (p.zone == i.donor_zone && overlap(p.range, i.to_donor(i.range)));
   }
-  Connection const& c = mesh_.connections[std::size_t(connection - n)];
+  Connection const& c = mesh_.connections[connection - n];
   auto const& nodes = surface(patch).nodes;
   auto const has = [&](std::vector<Index32> const& list) {
     return std::any_of(list.begin(), list.end(),

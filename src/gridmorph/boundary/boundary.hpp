@@ -69,7 +69,7 @@ class Boundary {
   [[nodiscard]] double size() const { return size_; }
   /// The precision of the coordinates of the mesh: that of its coarsest zone.
   [[nodiscard]] CoordinatePrecision const& precision() const { return precision_; }
-  [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[std::size_t(patch)]; }
+  [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[patch]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
   /// Of blocks of a 2-D mesh.

@@ -86,8 +86,8 @@ std::vector<std::string> contradicted_periodics(Mesh const& mesh, double mesh_si
   auto const n_zones = int(mesh.zones.size());
   for (auto const& face : mesh.interfaces) {
     bool const placed = face.zone >= 0 && face.zone < n_zones && face.donor_zone >= 0 && face.donor_zone < n_zones;
-    if (!face.periodic || !placed || !range_is_inside(mesh.zones[std::size_t(face.zone)], face.range) ||
-        !range_is_inside(mesh.zones[std::size_t(face.donor_zone)], face.to_donor(face.range)))
+    if (!face.periodic || !placed || !range_is_inside(mesh.zones[face.zone], face.range) ||
+        !range_is_inside(mesh.zones[face.donor_zone], face.to_donor(face.range)))
       continue;
     PartnerNodes pairs;
     for_each_pair(mesh, face, [&](Index p, Index q) {

@@ -40,9 +40,9 @@ class Quads {
  private:
   static int next(int h) { return 4 * (h / 4) + (h + 1) % 4; }
   static int before(int h) { return 4 * (h / 4) + (h + 3) % 4; }
-  [[nodiscard]] int origin(int h) const { return faces_[std::size_t(h / 4)][std::size_t(h % 4)]; }
+  [[nodiscard]] int origin(int h) const { return faces_[h / 4][h % 4]; }
   /// The face beside, unless a cut lies between; -1: none.
-  [[nodiscard]] int across(int h) const { return cut_[std::size_t(h)] ? -1 : twin_[std::size_t(h)]; }
+  [[nodiscard]] int across(int h) const { return cut_[h] ? -1 : twin_[h]; }
 
   void join() {
     // More than two faces at a side, or two that go opposite ways around, have no neighbours there.
@@ -50,13 +50,13 @@ class Quads {
     for (int h = 0; h < int(twin_.size()); ++h) sides[std::minmax(origin(h), origin(next(h)))].push_back(h);
     for (auto const& [ends, at] : sides)
       if (at.size() == 2 && at[0] / 4 != at[1] / 4 && origin(at[0]) != origin(at[1])) {
-        twin_[std::size_t(at[0])] = at[1];
-        twin_[std::size_t(at[1])] = at[0];
+        twin_[at[0]] = at[1];
+        twin_[at[1]] = at[0];
       }
   }
 
   [[nodiscard]] Vec3 normal(int f) const {
-    auto const at = [&](int s) { return points_[std::size_t(origin(4 * f + s))]; };
+    auto const at = [&](int s) { return points_[origin(4 * f + s)]; };
     return cross(at(2) - at(0), at(3) - at(1));
   }
   [[nodiscard]] double cosine(int f, int g) const {
@@ -66,9 +66,9 @@ class Quads {
   }
 
   void cut(int h, std::vector<int>& todo) {
-    if (twin_[std::size_t(h)] < 0 || cut_[std::size_t(h)]) return;
-    for (int const side : {h, twin_[std::size_t(h)]}) {
-      cut_[std::size_t(side)] = true;
+    if (twin_[h] < 0 || cut_[h]) return;
+    for (int const side : {h, twin_[h]}) {
+      cut_[side] = true;
       todo.push_back(side);
     }
   }
@@ -112,11 +112,11 @@ class Quads {
   [[nodiscard]] std::vector<int> faces_of_part(int f) {
     std::vector<int> out{f};
     ++walks_;
-    seen_[std::size_t(f)] = walks_;
+    seen_[f] = walks_;
     for (std::size_t n = 0; n < out.size(); ++n)
       for (int s = 0; s < 4; ++s)
-        if (int const at = across(4 * out[n] + s); at >= 0 && seen_[std::size_t(at / 4)] != walks_) {
-          seen_[std::size_t(at / 4)] = walks_;
+        if (int const at = across(4 * out[n] + s); at >= 0 && seen_[at / 4] != walks_) {
+          seen_[at / 4] = walks_;
           out.push_back(at / 4);
         }
     std::sort(out.begin(), out.end());
@@ -140,7 +140,7 @@ class Quads {
         corner = find_corner(faces);
       }
     }
-    for (int const face : faces) used[std::size_t(face)] = 1;
+    for (int const face : faces) used[face] = 1;
     FaceGrid grid;
     if (corner >= 0 && walk(corner, faces.size(), grid))
       out.grids.push_back(std::move(grid));
@@ -197,7 +197,7 @@ FaceGrids join_lines(std::vector<GridFacet> const& sides) {
   FaceGrids out;
   std::map<int, std::vector<int>> at_point;
   for (int f = 0; f < int(sides.size()); ++f)
-    for (int s = 0; s < 2; ++s) at_point[sides[std::size_t(f)][std::size_t(s)]].push_back(f);
+    for (int s = 0; s < 2; ++s) at_point[sides[f][s]].push_back(f);
   std::vector<char> used(sides.size(), 0);
   auto const go = [&](int start) {
     FaceGrid line;
@@ -205,10 +205,10 @@ FaceGrids join_lines(std::vector<GridFacet> const& sides) {
     for (int at = start;;) {
       int side = -1;
       for (int const f : at_point[at])
-        if (used[std::size_t(f)] == 0 && side < 0) side = f;
+        if (used[f] == 0 && side < 0) side = f;
       if (side < 0) break;
-      used[std::size_t(side)] = 1;
-      at = sides[std::size_t(side)][0] == at ? sides[std::size_t(side)][1] : sides[std::size_t(side)][0];
+      used[side] = 1;
+      at = sides[side][0] == at ? sides[side][1] : sides[side][0];
       line.point.push_back(at);
       if (at_point[at].size() != 2) break;
     }

@@ -162,8 +162,8 @@ FoundInterfaces find_interfaces(Mesh const& mesh, MatchOptions const& options) {
                         " face cells coincide with several others and were joined with the nearest");
   if (!options.periodic) return out;
 
-  std::vector<std::uint8_t> open(std::size_t(cells.size()));
-  for (Index c = 0; c < cells.size(); ++c) open[std::size_t(c)] = cells.is_open(c) ? 1 : 0;
+  std::vector<std::uint8_t> open(cells.size());
+  for (Index c = 0; c < cells.size(); ++c) open[c] = cells.is_open(c) ? 1 : 0;
   auto const matches = topology::find_periodic(cells, options.tolerance, out.notes);
   auto const judged = topology::judge(cells, matches, open);
   for (std::size_t m = 0; m < matches.size(); ++m) {

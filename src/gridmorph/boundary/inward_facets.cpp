@@ -8,7 +8,7 @@ InwardFacets::InwardFacets(Boundary const& boundary, std::vector<int> const& pat
   PatchSurface const surface(boundary, patches);
   nodes_.resize(surface.points.size());
   for (PatchGrid const& grid : surface.grids)
-    for (std::size_t n = 0; n < grid.nodes.size(); ++n) nodes_[std::size_t(grid.vertex[n])] = grid.nodes[n];
+    for (std::size_t n = 0; n < grid.nodes.size(); ++n) nodes_[grid.vertex[n]] = grid.nodes[n];
   if (!surface.lines) {
     facets_ = surface.facets();
     return;
@@ -26,8 +26,8 @@ FacetList InwardFacets::at(Coordinates const& x) const {
   bool const strips = !facets_.empty() && facets_.front()[2] < 0;
   if (strips)
     for (std::int32_t n = 0; n < beside; ++n) {
-      Vec3 const middle = list.points[std::size_t(n)];
-      list.points[std::size_t(n)] = middle - across_;
+      Vec3 const middle = list.points[n];
+      list.points[n] = middle - across_;
       list.points.push_back(middle + across_);
     }
   // Of a line a to b the normal into the mesh is across x (b - a).

@@ -68,7 +68,7 @@ class PeriodicFits {
   /// for pitches that differ.
   [[nodiscard]] RigidTransform of(std::size_t f) const {
     Interface1to1 const& face = mesh_.interfaces[f];
-    Group const& group = groups_[std::size_t(group_[f])];
+    Group const& group = groups_[group_[f]];
     std::vector<Vec3> own, donor;
     for_each_pair(mesh_, face, [&](Index p, Index q) {
       own.push_back(mesh_.coordinates[p]);
@@ -101,12 +101,12 @@ class PeriodicFits {
       declared.declared = declared.declared.inverse();
     }
     for (int g = 0; g < int(groups_.size()) && group_[f] < 0; ++g)
-      if (alike(declared.declared, groups_[std::size_t(g)].declared.declared)) group_[f] = g;
+      if (alike(declared.declared, groups_[g].declared.declared)) group_[f] = g;
     if (group_[f] < 0) {
       group_[f] = int(groups_.size());
       groups_.push_back({declared, {}, 0, {}});
     }
-    Group& group = groups_[std::size_t(group_[f])];
+    Group& group = groups_[group_[f]];
     ++group.members;
     for_each_pair(mesh_, face, [&](Index p, Index q) {
       Vec3 const a = mesh_.coordinates[back_[f] != 0 ? q : p], b = mesh_.coordinates[back_[f] != 0 ? p : q];

@@ -78,7 +78,7 @@ PatchSurface::PatchSurface(Boundary const& boundary, std::vector<int> const& pat
       grid.listed = own.in_file_order;
       for (GridFacet facet : own.faces) {
         for (int& corner : facet)
-          if (corner >= 0) corner = grid.vertex[std::size_t(corner)];
+          if (corner >= 0) corner = grid.vertex[corner];
         grid.faces.push_back(facet);
       }
     }
@@ -116,7 +116,7 @@ std::optional<PatchSurface> PatchSurface::in_grids(Boundary const& boundary) con
       continue;
     }
     std::vector<Vec3> at;
-    for (int const v : own.vertex) at.push_back(points[std::size_t(v)]);
+    for (int const v : own.vertex) at.push_back(points[v]);
     FaceGrids const found = find_face_grids(boundary.surface(own.patch).faces, at);
     if (found.left_over > 0 || lines) return std::nullopt;
     for (FaceGrid const& grid : found.grids) {
@@ -124,8 +124,8 @@ std::optional<PatchSurface> PatchSurface::in_grids(Boundary const& boundary) con
       piece.patch = own.patch;
       piece.extent = grid.extent;
       for (int const n : grid.point) {
-        piece.vertex.push_back(own.vertex[std::size_t(n)]);
-        piece.nodes.push_back(own.nodes[std::size_t(n)]);
+        piece.vertex.push_back(own.vertex[n]);
+        piece.nodes.push_back(own.nodes[n]);
       }
       out.grids.push_back(std::move(piece));
     }

@@ -41,7 +41,7 @@ std::vector<PatchesOfRow> patches_by_row(Boundary const& boundary, std::vector<i
   DisjointSets<int> rows(boundary.zones().size());
   for (AnyConnection const& c : connections) rows.join(c.zone, c.donor_zone);
   std::map<int, PatchesOfRow> found;
-  for (int const p : patches) found[rows.root(boundary.patches()[std::size_t(p)].zone)].patches.push_back(p);
+  for (int const p : patches) found[rows.root(boundary.patches()[p].zone)].patches.push_back(p);
   std::vector<PatchesOfRow> out;
   for (auto& [root, row] : found) {
     std::vector<RigidTransform> transforms;

@@ -48,16 +48,16 @@ class BoxesOfCells {
   /// The box that holds the cells inside, or those of its parts.
   void divide(Extent const& box) {
     std::array<std::vector<Extent>, 3> layer;  // along each axis, what each layer holds
-    for (int a = 0; a < 3; ++a) layer[std::size_t(a)].resize(std::size_t(box.end[a] - box.begin[a]));
+    for (int a = 0; a < 3; ++a) layer[a].resize(box.end[a] - box.begin[a]);
     Index held = 0;
     Extent whole;
     Index3 c{};
     for (c[2] = box.begin[2]; c[2] < box.end[2]; ++c[2])
       for (c[1] = box.begin[1]; c[1] < box.end[1]; ++c[1])
         for (c[0] = box.begin[0]; c[0] < box.end[0]; ++c[0]) {
-          if (inside_[std::size_t(c[0] + cells_[0] * (c[1] + Index(cells_[1]) * c[2]))] == 0) continue;
+          if (inside_[c[0] + cells_[0] * (c[1] + Index(cells_[1]) * c[2])] == 0) continue;
           Extent const one{c, {c[0] + 1, c[1] + 1, c[2] + 1}};
-          for (int a = 0; a < 3; ++a) layer[std::size_t(a)][std::size_t(c[a] - box.begin[a])].include(one);
+          for (int a = 0; a < 3; ++a) layer[a][c[a] - box.begin[a]].include(one);
           whole.include(one);
           ++held;
         }
@@ -68,7 +68,7 @@ class BoxesOfCells {
     auto const worth = Index((1 - worth_a_plane) * double(whole.volume()));
     Index least = std::numeric_limits<Index>::max();
     for (int a = 0; a < 3; ++a) {
-      auto const& of = layer[std::size_t(a)];
+      auto const& of = layer[a];
       std::vector<Extent> above(of.size() + 1);
       for (std::size_t n = of.size(); n-- > 0;) {
         above[n] = above[n + 1];
@@ -120,7 +120,7 @@ void each_cell(Zone const& zone, Look const& look) {
 Index first_cell(Mesh const& mesh, int zone) {
   Index out = 0;
   for (int z = 0; z < zone; ++z) {
-    Index3 const& n = mesh.zones[std::size_t(z)].extent;
+    Index3 const& n = mesh.zones[z].extent;
     out += Index(n[0] - 1) * (n[1] - 1) * (n[2] - 1);
   }
   return out;
@@ -178,7 +178,7 @@ class Finder {
     for (std::string const& name : region.zones) {
       bool found = false;
       for (int z = 0; z < int(mesh_.zones.size()); ++z)
-        if (glob_match(name, mesh_.zones[std::size_t(z)].name)) {
+        if (glob_match(name, mesh_.zones[z].name)) {
           out.insert(z);
           found = true;
         }
@@ -197,7 +197,7 @@ class Finder {
     if (zones.size() != 1)
       return problems_.add(label + ": its nodes are those of one zone, and it names " + std::to_string(zones.size()) +
                            "; name the zone");
-    Zone const& zone = mesh_.zones[std::size_t(zones.front())];
+    Zone const& zone = mesh_.zones[zones.front()];
     IndexRange const all{{0, 0, 0}, zone.extent}, &range = *region.nodes;
     int flat = 0;
     bool inside = true, on_face = false;
@@ -228,14 +228,14 @@ class Finder {
     std::size_t boxes = 0;
     std::set<int> in;
     for (int const z : zones) {
-      Zone const& zone = mesh_.zones[std::size_t(z)];
+      Zone const& zone = mesh_.zones[z];
       Index3 const cells{zone.extent[0] - 1, zone.extent[1] - 1, zone.extent[2] - 1};
-      std::vector<char> inside(std::size_t(Index(cells[0]) * cells[1] * cells[2]), 1);
+      std::vector<char> inside(Index(cells[0]) * cells[1] * cells[2], 1);
       looked_at += Index(inside.size());
       Index const first = first_cell(mesh_, z);
       each_cell(zone, [&](Index c, Index3 const& at) {
-        bool const in = !region.cells || (*region.cells)[std::size_t(first + c)] != 0;
-        inside[std::size_t(c)] = in && (!region.holds || region.holds(middle(mesh_, zone, at))) ? 1 : 0;
+        bool const in = !region.cells || (*region.cells)[first + c] != 0;
+        inside[c] = in && (!region.holds || region.holds(middle(mesh_, zone, at))) ? 1 : 0;
       });
       held += std::count(inside.begin(), inside.end(), 1);
       for (IndexRange const& box : boxes_of_cells(cells, inside)) {
@@ -251,7 +251,7 @@ class Finder {
       return problems_.add(label + " holds none of the " + std::to_string(looked_at) + " cells that it looks at, in " +
                            std::to_string(zones.size()) + " zones; correct where it lies");
     std::vector<std::string> names;
-    for (int const z : in) names.push_back(mesh_.zones[std::size_t(z)].name);
+    for (int const z : in) names.push_back(mesh_.zones[z].name);
     constexpr std::size_t most = 4;
     mesh_.notes.push_back("region '" + region.name + "': " + std::to_string(taken) + " cells in " +
                           std::to_string(boxes) + (boxes == 1 ? " box" : " boxes") + " of zones " +
@@ -287,7 +287,7 @@ class ElementFinder {
     if (region.cells && Index(region.cells->size()) != mesh_.n_elements())
       return problems_.add(label + ": it says of " + std::to_string(region.cells->size()) +
                            " elements whether they lie in it, and the mesh has " + std::to_string(mesh_.n_elements()));
-    std::vector<std::uint8_t> named(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
+    std::vector<std::uint8_t> named(mesh_.n_elements(), region.zones.empty() ? 1 : 0);
     std::vector<int> subsets;
     for (std::string const& name : region.zones)
       if (!name_zone(name, named, subsets)) return problems_.add(no_such_zone(label, name, names_of_zones()));
@@ -301,12 +301,12 @@ class ElementFinder {
       patch.nodes.insert(patch.nodes.end(), nodes.begin(), nodes.end());
     };
     for (Index e = 0; e < mesh_.n_elements(); ++e) {
-      if (named[std::size_t(e)] == 0 || !holds(region, mesh_.elements.corners(e))) continue;
+      if (named[e] == 0 || !holds(region, mesh_.elements.corners(e))) continue;
       take(mesh_.elements.nodes[e]);
       patch.zone = elements++ == 0 ? mesh_.zone_of_element(e) : patch.zone;
     }
     for (int const s : subsets) {
-      CsrGraph const& of = mesh_.subsets[std::size_t(s)].faces;
+      CsrGraph const& of = mesh_.subsets[s].faces;
       for (Index f = 0; f < of.size(); ++f) {
         if (!holds(region, of[f])) continue;
         take(of[f]);
@@ -327,7 +327,7 @@ class ElementFinder {
 
   /// Whether each element is in the region.
   std::vector<std::uint8_t> elements(InnerRegion const& region) {
-    std::vector<std::uint8_t> in(std::size_t(mesh_.n_elements()), region.zones.empty() ? 1 : 0);
+    std::vector<std::uint8_t> in(mesh_.n_elements(), region.zones.empty() ? 1 : 0);
     std::string const label = RegionNames::label(region);
     std::vector<int> subsets;
     if (region.nodes) problems_.add(label + ": its nodes are i, j and k of a block, and the mesh is one of elements");
@@ -336,7 +336,7 @@ class ElementFinder {
     problems_.throw_if_any<MotionError>();
     if (region.cells) keep_those(*region.cells, in);
     for (Index e = 0; e < mesh_.n_elements(); ++e)
-      if (in[std::size_t(e)] != 0 && !holds(region, mesh_.elements.corners(e))) in[std::size_t(e)] = 0;
+      if (in[e] != 0 && !holds(region, mesh_.elements.corners(e))) in[e] = 0;
     if (region.only_measured && std::count(in.begin(), in.end(), 1) == 0)
       throw MotionError(label + " holds no element of what it names; correct where it lies");
     return in;
@@ -371,7 +371,7 @@ class ElementFinder {
       if (glob_match(name, mesh_.subsets[s].name)) {
         found = true;
         subsets.push_back(int(s));
-        for (Index32 const e : mesh_.subsets[s].elements) named[std::size_t(e)] = 1;
+        for (Index32 const e : mesh_.subsets[s].elements) named[e] = 1;
       }
     return found;
   }

@@ -10,13 +10,13 @@ SecondPlane::SecondPlane(BoundaryMesh const& mesh) {
   if (mesh.dimension != 2 || mesh.coordinates.size() == 0) return;
   double farthest = 0;
   for (Patch const& patch : mesh.patches) {
-    Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh.zones[patch.zone];
     if (!zone.is_block() || patch.name != plane_patch_name) continue;
     int axis = -1;
     for (int a = 0; a < 3; ++a)
-      if (patch.range.extent(a) == 1 && zone.extent[std::size_t(a)] == 2) axis = a;
-    if (axis < 0 || patch.range.begin[std::size_t(axis)] != 0) continue;
-    Index const across = zone.strides()[std::size_t(axis)];
+      if (patch.range.extent(a) == 1 && zone.extent[a] == 2) axis = a;
+    if (axis < 0 || patch.range.begin[axis] != 0) continue;
+    Index const across = zone.strides()[axis];
     for_each_node(zone, patch.range, [&](Index n) {
       Vec3 const x = mesh.coordinates[n];
       if (!shift_) {

@@ -101,7 +101,7 @@ Selection select(BoundaryMesh const& mesh, std::string const& selector) {
 
   bool const qualified = selector.find('/') != std::string::npos;
   auto const named = [&](auto const& one) {
-    std::string zone(one.zone_in_file.empty() ? mesh.zones[std::size_t(one.zone)].name : one.zone_in_file);
+    std::string zone(one.zone_in_file.empty() ? mesh.zones[one.zone].name : one.zone_in_file);
     return glob_match(selector, one.name) || (qualified && glob_match(selector, zone + "/" + one.name));
   };
   Selection const by_bc = select_if(mesh, [&](Patch const& p) { return p.kind != PatchKind::connection && named(p); });
@@ -181,7 +181,7 @@ namespace {
 /// The other side of a connection that the file stores twice, or -1. A range that closes on itself is its own partner
 /// only if there is no other.
 int find_partner(BoundaryMesh const& mesh, int interface) {
-  Interface1to1 const& own = mesh.interfaces[std::size_t(interface)];
+  Interface1to1 const& own = mesh.interfaces[interface];
   IndexRange const donor = own.to_donor(own.range);
   for (std::size_t j = 0; j < mesh.interfaces.size(); ++j) {
     Interface1to1 const& other = mesh.interfaces[j];
@@ -195,7 +195,7 @@ int find_partner(BoundaryMesh const& mesh, int interface) {
 /// The other side of a connection of elements that the file stores twice, or -1; sides may list their nodes in any
 /// order.
 int find_partner(std::vector<Connection> const& connections, int connection) {
-  Connection const& own = connections[std::size_t(connection)];
+  Connection const& own = connections[connection];
   auto const sorted = [](std::vector<Index32> list) {
     std::sort(list.begin(), list.end());
     return list;

@@ -72,7 +72,7 @@ class NamedBoundary {
     return gridmorph::matches_nothing(*mesh_, selector);
   }
   [[nodiscard]] std::string describe_patch(int patch) const {
-    return gridmorph::describe_patch(*mesh_, mesh_->patches[std::size_t(patch)]);
+    return gridmorph::describe_patch(*mesh_, mesh_->patches[patch]);
   }
   [[nodiscard]] std::string describe_interface(AnyConnection const& interface) const {
     return gridmorph::describe_interface(*mesh_, interface);

@@ -100,12 +100,9 @@ struct SequenceOptions {
 
   /// Of step 0 ... steps - 1.
   [[nodiscard]] double periods_at(int step) const {
-    return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps)
-                         : times[std::size_t(step)] / period;
+    return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps) : times[step] / period;
   }
-  [[nodiscard]] double time_at(int step) const {
-    return times.empty() ? period * periods_at(step) : times[std::size_t(step)];
-  }
+  [[nodiscard]] double time_at(int step) const { return times.empty() ? period * periods_at(step) : times[step]; }
   [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
 };
 

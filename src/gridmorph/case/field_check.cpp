@@ -22,8 +22,8 @@ std::vector<Vec3> nodes_of(Mesh const& mesh, SecondPlane const& second_plane, Mo
       continue;
     }
     for (int const p : named.patches) {
-      Patch const& patch = mesh.patches[std::size_t(p)];
-      Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+      Patch const& patch = mesh.patches[p];
+      Zone const& zone = mesh.zones[patch.zone];
       auto const add = [&](Index n) { out.push_back(second_plane.first(mesh.coordinates[n])); };
       if (zone.is_block() && patch.faces.size() == 0 && patch.nodes.empty())
         for_each_node(zone, patch.range, add);

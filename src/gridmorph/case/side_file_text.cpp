@@ -78,7 +78,7 @@ class Namer {
   template <class Visit>
   void each_node(std::size_t p, Visit visit) const {
     IndexRange const& r = patch(p).range;
-    Zone const& zone = mesh_.zones[std::size_t(patch(p).zone)];
+    Zone const& zone = mesh_.zones[patch(p).zone];
     for (int k = r.begin[2]; k < r.end[2]; ++k)
       for (int j = r.begin[1]; j < r.end[1]; ++j)
         for (int i = r.begin[0]; i < r.end[0]; ++i) visit(zone.node({i, j, k}));
@@ -87,7 +87,7 @@ class Namer {
   /// The edges around a rectangle, each with the normal of its cell.
   void outline(std::size_t p, std::vector<Edge>& edges) const {
     IndexRange const& r = patch(p).range;
-    Zone const& zone = mesh_.zones[std::size_t(patch(p).zone)];
+    Zone const& zone = mesh_.zones[patch(p).zone];
     int normal = 0;
     while (normal < 2 && r.extent(normal) != 1) ++normal;
     int const u = normal == 0 ? 1 : 0, v = normal == 2 ? 1 : 2;
@@ -108,7 +108,7 @@ class Namer {
       return length > 0 ? (dot(out, in) < 0 ? -1 / length : 1 / length) * out : Vec3{};
     };
     auto const add = [&](Index m, Index n, Vec3 const& across) {
-      Index const a = number_[std::size_t(m)], b = number_[std::size_t(n)];
+      Index const a = number_[m], b = number_[n];
       if (a != b && distance(x(m), x(n)) > 0) edges.push_back({{std::min(a, b), std::max(a, b)}, p, across});
     };
     int const nu = r.extent(u) - 1, nv = r.extent(v) - 1;
@@ -159,12 +159,12 @@ class Namer {
     std::array<std::map<std::size_t, int>, 2> number;  // of surfaces and bodies, in the order of their first patch
     for (std::size_t p = 0; p < n_; ++p)
       if (plane[p].empty() && !is_pole(p)) {
-        auto& of_kind = number[std::size_t(inside[p])];
+        auto& of_kind = number[inside[p]];
         of_kind.try_emplace(bodies.root(p), int(of_kind.size()) + 1);
       }
     std::vector<std::string> out;
     for (std::size_t p = 0; p < n_; ++p) {
-      auto const& of_kind = number[std::size_t(inside[p])];
+      auto const& of_kind = number[inside[p]];
       std::string const word = inside[p] ? "body" : "surface";
       if (is_pole(p))
         out.emplace_back("pole");

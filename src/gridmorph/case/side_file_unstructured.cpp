@@ -59,7 +59,7 @@ class ElementsReader {
     auto const kind = table.choice("kind", casefile::side_file_kinds);
     table.finish();
     for (int const p : own) {
-      auto& patch = mesh_.patches[std::size_t(p)];
+      auto& patch = mesh_.patches[p];
       if (kind) {
         patch.kind = PatchKind(*kind);
         patch.bc_type = casefile::bc_type_of(patch.kind);
@@ -74,7 +74,7 @@ class ElementsReader {
   std::vector<Index32> nodes_of(std::vector<int> const& patches) const {
     std::vector<Index32> out;
     for (int const p : patches) {
-      auto const nodes = patch_nodes(mesh_.patches[std::size_t(p)]);
+      auto const nodes = patch_nodes(mesh_.patches[p]);
       out.insert(out.end(), nodes.begin(), nodes.end());
     }
     std::sort(out.begin(), out.end());
@@ -110,10 +110,10 @@ class ElementsReader {
     auto const periodic = periodic_.of(table);
     table.finish();
     if (own.empty() || donor.empty() || !periodic) return;
-    out.zone = mesh_.patches[std::size_t(own.front())].zone;
-    out.donor_zone = mesh_.patches[std::size_t(donor.front())].zone;
+    out.zone = mesh_.patches[own.front()].zone;
+    out.donor_zone = mesh_.patches[donor.front()].zone;
     auto const one_zone = [&](std::vector<int> const& list, int zone) {
-      return std::all_of(list.begin(), list.end(), [&](int p) { return mesh_.patches[std::size_t(p)].zone == zone; });
+      return std::all_of(list.begin(), list.end(), [&](int p) { return mesh_.patches[p].zone == zone; });
     };
     if (!one_zone(own, out.zone) || !one_zone(donor, out.donor_zone))
       return table.problem("patch", "lies in several zones; one pair of zones can be joined");
@@ -124,12 +124,11 @@ class ElementsReader {
     if (missing > 0)
       return table.problem(
           "patch",
-          fmt::format(
-              "{} of its {} nodes have none of donor_patch within {:.3g} after the transform, the first "
-              "is {}; check axis, angle and unit (the donor has {} nodes)",
-              missing, out.nodes.size(), tolerance_of_pairs(),
-              describe_node(mesh_, out.nodes[std::size_t(std::find(list.begin(), list.end(), -1) - list.begin())]),
-              others.size()));
+          fmt::format("{} of its {} nodes have none of donor_patch within {:.3g} after the transform, the first "
+                      "is {}; check axis, angle and unit (the donor has {} nodes)",
+                      missing, out.nodes.size(), tolerance_of_pairs(),
+                      describe_node(mesh_, out.nodes[std::find(list.begin(), list.end(), -1) - list.begin()]),
+                      others.size()));
     out.donor_nodes = std::move(list);
     out.periodic = transform;
     mesh_.connections.push_back(std::move(out));

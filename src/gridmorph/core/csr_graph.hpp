@@ -26,7 +26,7 @@ struct CsrGraph {
   /// Number of rows.
   [[nodiscard]] Index size() const { return Index(first.size()) - 1; }
   [[nodiscard]] std::span<Index32 const> operator[](Index n) const {
-    return {item.data() + first[std::size_t(n)], std::size_t(first[std::size_t(n) + 1] - first[std::size_t(n)])};
+    return {item.data() + first[n], std::size_t(first[n + 1] - first[n])};
   }
   void add(std::span<Index32 const> row) {
     item.insert(item.end(), row.begin(), row.end());

@@ -20,12 +20,12 @@ class DisjointSets {
   explicit DisjointSets(std::vector<Number> roots) : root_(std::move(roots)) {}
 
   [[nodiscard]] Number root(Number n) {
-    while (root_[std::size_t(n)] != n) n = root_[std::size_t(n)] = root_[std::size_t(root_[std::size_t(n)])];
+    while (root_[n] != n) n = root_[n] = root_[root_[n]];
     return n;
   }
   void join(Number a, Number b) {
     auto const [low, high] = std::minmax({root(a), root(b)});
-    root_[std::size_t(high)] = low;
+    root_[high] = low;
   }
   /// The root of every number.
   [[nodiscard]] std::vector<Number> roots() {
@@ -38,7 +38,7 @@ class DisjointSets {
     Number count = 0;
     for (std::size_t n = 0; n < out.size(); ++n) {
       Number const r = root(Number(n));
-      out[n] = r == Number(n) ? count++ : out[std::size_t(r)];
+      out[n] = r == Number(n) ? count++ : out[r];
     }
     return out;
   }

@@ -36,27 +36,25 @@ class IndexBuckets {
     Index const n_chunks = std::clamp<Index>(n_items / smallest_chunk, 1, host_.concurrency());
     auto const first_item = [&](Index chunk) { return chunk * n_items / n_chunks; };
     // Bucket after bucket, chunk after chunk in each: the running sum is where the records of a chunk go.
-    std::vector<Index> place(std::size_t(n_buckets_ * n_chunks), 0);
+    std::vector<Index> place(n_buckets_ * n_chunks, 0);
     for_all_parts(host_, label_ + "::count", n_chunks, [&](Index c) {
-      std::vector<Index> count(std::size_t(n_buckets_), 0);
+      std::vector<Index> count(n_buckets_, 0);
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
-        emit(i, [&](Index32 key, Record const&) { ++count[std::size_t(key / keys_per_bucket_)]; });
-      for (Index b = 0; b < n_buckets_; ++b) place[std::size_t(b * n_chunks + c)] = count[std::size_t(b)];
+        emit(i, [&](Index32 key, Record const&) { ++count[key / keys_per_bucket_]; });
+      for (Index b = 0; b < n_buckets_; ++b) place[b * n_chunks + c] = count[b];
     });
     Index sum = 0;
     for (Index b = 0; b < n_buckets_; ++b) {
-      begin_[std::size_t(b)] = sum;
-      for (Index c = 0; c < n_chunks; ++c) sum += std::exchange(place[std::size_t(b * n_chunks + c)], sum);
+      begin_[b] = sum;
+      for (Index c = 0; c < n_chunks; ++c) sum += std::exchange(place[b * n_chunks + c], sum);
     }
-    begin_[std::size_t(n_buckets_)] = sum;
+    begin_[n_buckets_] = sum;
     entry_ = std::make_unique_for_overwrite<Entry[]>(std::size_t(sum));
     for_all_parts(host_, label_ + "::place", n_chunks, [&](Index c) {
-      std::vector<Index> at(std::size_t(n_buckets_), 0);
-      for (Index b = 0; b < n_buckets_; ++b) at[std::size_t(b)] = place[std::size_t(b * n_chunks + c)];
+      std::vector<Index> at(n_buckets_, 0);
+      for (Index b = 0; b < n_buckets_; ++b) at[b] = place[b * n_chunks + c];
       for (Index i = first_item(c); i < first_item(c + 1); ++i)
-        emit(i, [&](Index32 key, Record const& record) {
-          entry_[std::size_t(at[std::size_t(key / keys_per_bucket_)]++)] = {key, record};
-        });
+        emit(i, [&](Index32 key, Record const& record) { entry_[at[key / keys_per_bucket_]++] = {key, record}; });
     });
   }
 
@@ -69,18 +67,18 @@ class IndexBuckets {
   void for_each_key(Visit const& visit) const {
     for_all_parts(host_, label_ + "::group", n_buckets_, [&](Index b) {
       Index const first_key = b * keys_per_bucket_, end_key = std::min(first_key + keys_per_bucket_, n_keys_);
-      Index const begin = begin_[std::size_t(b)], end = begin_[std::size_t(b) + 1];
+      Index const begin = begin_[b], end = begin_[b + 1];
       std::vector<Index> first(std::size_t(end_key - first_key) + 1, 0);
-      for (Index e = begin; e < end; ++e) ++first[std::size_t(entry_[std::size_t(e)].key - first_key) + 1];
+      for (Index e = begin; e < end; ++e) ++first[std::size_t(entry_[e].key - first_key) + 1];
       for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
       std::vector<Index> next(first.begin(), first.end() - 1);
       auto const record = std::make_unique_for_overwrite<Record[]>(std::size_t(end - begin));
       for (Index e = begin; e < end; ++e) {
-        Entry const& entry = entry_[std::size_t(e)];
-        record[std::size_t(next[std::size_t(entry.key - first_key)]++)] = entry.record;
+        Entry const& entry = entry_[e];
+        record[next[entry.key - first_key]++] = entry.record;
       }
       for (Index key = first_key; key < end_key; ++key) {
-        Index const from = first[std::size_t(key - first_key)], to = first[std::size_t(key - first_key) + 1];
+        Index const from = first[key - first_key], to = first[std::size_t(key - first_key) + 1];
         visit(Index32(key), begin + from, std::span<Record>(record.get() + from, std::size_t(to - from)));
       }
     });

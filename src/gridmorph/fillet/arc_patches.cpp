@@ -23,7 +23,7 @@ std::string with_suffix(std::string const& name) {
 class ArcNames {
  public:
   ArcNames(Mesh const& before, FilletOptions const& options, Mesh& to) {
-    Patch const& blade = before.patches[std::size_t(options.blade.front())];
+    Patch const& blade = before.patches[options.blade.front()];
     std::string const family = blade.families.empty() ? blade.name : blade.families.front();
     name_ = with_suffix(blade.name);
     families_ = {with_suffix(family), family};
@@ -31,7 +31,7 @@ class ArcNames {
     // Pieces of one zone cannot all have the name of the wall, so that walls without a family get one of that name.
     for (auto const* walls : {&options.blade, &options.end_wall})
       for (int const p : *walls) {
-        Patch const& wall = before.patches[std::size_t(p)];
+        Patch const& wall = before.patches[p];
         if (wall.families.empty()) known.insert(wall.name);
       }
     for (Patch& patch : to.patches) {
@@ -88,12 +88,12 @@ void separate_arcs(Mesh const& before, FilletOptions const& options, WallSheets 
   ArcNames names(before, options, mesh);
   for (ArcFaces const& arc : arcs) {
     CornerFrame const& corner = corners[arc.corner];
-    Sheet const& sheet = *corner.sheet[std::size_t(arc.wall)];
-    Sheet const& other = *corner.sheet[std::size_t(1 - arc.wall)];
+    Sheet const& sheet = *corner.sheet[arc.wall];
+    Sheet const& other = *corner.sheet[1 - arc.wall];
     auto const& walls = arc.wall == 0 ? options.blade : options.end_wall;
     for (std::size_t p = 0, count = mesh.patches.size(); p < count; ++p) {
-      SplitZone const& part = split.zones[std::size_t(mesh.patches[p].zone)];
-      if (part.sheet < 0 || &sheets.all[std::size_t(part.sheet)] != &sheet) continue;
+      SplitZone const& part = split.zones[mesh.patches[p].zone];
+      if (part.sheet < 0 || &sheets.all[part.sheet] != &sheet) continue;
       if (std::find(walls.begin(), walls.end(), split.patches[p]) == walls.end()) continue;
       Patch const wall = mesh.patches[p];
       int const on_wall = sheet.side == 0 ? 0 : layers.made;
@@ -128,12 +128,11 @@ void separate_arcs(FilletOptions const& options, std::span<std::uint8_t const> o
   ArcNames names(mesh, options, mesh);
   for (auto const* walls : {&options.blade, &options.end_wall})
     for (int const p : *walls) {
-      Patch& wall = mesh.patches[std::size_t(p)];
+      Patch& wall = mesh.patches[p];
       CsrGraph arc, rest;
       for (Index f = 0; f < wall.faces.size(); ++f) {
         auto const face = wall.faces[f];
-        bool const of_arc =
-            std::any_of(face.begin(), face.end(), [&](Index32 n) { return on_arc[std::size_t(n)] != 0; });
+        bool const of_arc = std::any_of(face.begin(), face.end(), [&](Index32 n) { return on_arc[n] != 0; });
         (of_arc ? arc : rest).add(face);
       }
       if (arc.size() == 0 || rest.size() == 0) continue;

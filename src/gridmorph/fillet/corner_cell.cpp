@@ -18,8 +18,8 @@ std::array<Index32, 3> beside(std::span<Index32 const> corners, Index32 node) {
   std::size_t found = 0;
   for (int e = 0; e < n_edges(hexahedron); ++e)
     for (int end = 0; end < 2; ++end)
-      if (corners[std::size_t(edge_corner(hexahedron, e, end))] == node && found < 3)
-        out[found++] = corners[std::size_t(edge_corner(hexahedron, e, 1 - end))];
+      if (corners[edge_corner(hexahedron, e, end)] == node && found < 3)
+        out[found++] = corners[edge_corner(hexahedron, e, 1 - end)];
   return out;
 }
 
@@ -91,7 +91,7 @@ std::optional<CornerCell> CornerLattice::off(CornerCell const& cell, int wall) c
   for (std::size_t end = 0; end < 2; ++end)
     for (std::size_t k = 0; k < 2; ++k) nodes[count++] = far(end, k);
   Index32 const e = out.element = across(cell.element, nodes);
-  if (e < 0 || elements_.mesh().elements.type[std::size_t(e)] != hexahedron) return {};
+  if (e < 0 || elements_.mesh().elements.type[e] != hexahedron) return {};
   auto const corners = elements_.mesh().elements.corners(e);
   for (Index32& n : nodes) n = elements_.node_at(e, elements_.place(n));
   count = 0;
@@ -106,7 +106,7 @@ std::optional<CornerCell> CornerLattice::off(CornerCell const& cell, int wall) c
 }
 
 std::array<Index32, 4> CornerLattice::end_face(CornerCell const& cell, int end) {
-  auto const& at = cell.node[std::size_t(end)];
+  auto const& at = cell.node[end];
   return {at[0][0], at[1][0], at[1][1], at[0][1]};
 }
 
@@ -118,22 +118,22 @@ std::optional<CornerCell> CornerLattice::behind(CornerCell const& cell, int end)
   } else {
     BoundaryFaces const& faces = elements_.topology().boundary;
     Index32 const f = find_boundary_face(elements_.topology(), face);
-    if (f < 0 || faces.across[std::size_t(f)] < 0) return {};
-    out.element = faces.element[std::size_t(faces.across[std::size_t(f)])];
-    for (Index32& n : face) n = partner(n, faces.connection[std::size_t(f)]);
+    if (f < 0 || faces.across[f] < 0) return {};
+    out.element = faces.element[faces.across[f]];
+    for (Index32& n : face) n = partner(n, faces.connection[f]);
   }
-  if (elements_.mesh().elements.type[std::size_t(out.element)] != hexahedron)
+  if (elements_.mesh().elements.type[out.element] != hexahedron)
     throw MeshError(elements_.mesh().source + ": the corner goes on behind the blade into " +
                     describe_element(elements_.mesh(), out.element) +
                     ", and has to be cut there as along the blade; that takes hexahedra all the way to the boundary");
   auto const corners = elements_.mesh().elements.corners(out.element);
-  auto& near = out.node[std::size_t(1 - end)];
+  auto& near = out.node[1 - end];
   near[0][0] = face[0];
   near[1][0] = face[1];
   near[1][1] = face[2];
   near[0][1] = face[3];
   for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) out.node[std::size_t(end)][i][j] = away(corners, near[i][j], face);
+    for (std::size_t j = 0; j < 2; ++j) out.node[end][i][j] = away(corners, near[i][j], face);
   if (!is_whole(out))
     throw MeshError(elements_.mesh().source + ": " + describe_element(elements_.mesh(), out.element) +
                     " is collapsed; the corner goes on through it and has to be cut there");
@@ -143,7 +143,7 @@ std::optional<CornerCell> CornerLattice::behind(CornerCell const& cell, int end)
 Index32 CornerLattice::partner(Index32 node, Index32 connection_side) const {
   auto& pairs = partners_[connection_side];
   if (pairs.empty()) {
-    Connection const& c = elements_.mesh().connections[std::size_t(connection_side / 2)];
+    Connection const& c = elements_.mesh().connections[connection_side / 2];
     auto const& own = connection_side % 2 == 0 ? c.nodes : c.donor_nodes;
     auto const& donor = connection_side % 2 == 0 ? c.donor_nodes : c.nodes;
     for (std::size_t n = 0; n < own.size(); ++n) pairs[own[n]] = donor[n];

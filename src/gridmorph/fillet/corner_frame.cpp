@@ -37,13 +37,13 @@ CornerRows::CornerRows(std::vector<CornerFrame> const& corners, Links const& lin
       for (int n = 0; n < stations; ++n) {
         CornerPlace const place{at->corner, at->station + n * step};
         if (n > 0 || !shared) places.push_back(place);
-        number_[place.corner][std::size_t(place.station)] = int(places.size()) - 1;
+        number_[place.corner][place.station] = int(places.size()) - 1;
       }
       at = across(other_end(*at));
     }
     if (closed) {  // its last station is its first one
       CornerPlace const last = places.back();
-      number_[last.corner][std::size_t(last.station)] = 0;
+      number_[last.corner][last.station] = 0;
       places.pop_back();
     }
   }
@@ -52,8 +52,8 @@ CornerRows::CornerRows(std::vector<CornerFrame> const& corners, Links const& lin
 std::optional<CornerPlace> CornerRows::across(CornerPlace const& end) const {
   CornerFrame const& corner = corners_[end.corner];
   Index3 const p = corner.index(end.station, {0, 0});
-  for (int n : links_.of_zone[std::size_t(corner.zone_number())]) {
-    Link const& link = links_.all[std::size_t(n)];
+  for (int n : links_.of_zone[corner.zone_number()]) {
+    Link const& link = links_.all[n];
     if (link.periodic || link.range.extent(corner.along()) != 1 || !link.range.contains(p)) continue;
     Index3 const q = link.to_donor(p);
     for (std::size_t d = 0; d < corners_.size(); ++d)

@@ -25,7 +25,7 @@ struct CornerFrame {
     return p;
   }
   /// The number of cells from wall w to the other side of the zone.
-  [[nodiscard]] int cells(int w) const { return zone->extent[sheet[std::size_t(w)]->axis] - 1; }
+  [[nodiscard]] int cells(int w) const { return zone->extent[sheet[w]->axis] - 1; }
 };
 
 /// All corners of a mesh, zone after zone.
@@ -52,7 +52,7 @@ class CornerRows {
   [[nodiscard]] std::vector<CornerRow> const& rows() const { return rows_; }
   [[nodiscard]] int row_of(std::size_t corner) const { return row_of_[corner]; }
   /// The number of a station in its row.
-  [[nodiscard]] int number(CornerPlace const& place) const { return number_[place.corner][std::size_t(place.station)]; }
+  [[nodiscard]] int number(CornerPlace const& place) const { return number_[place.corner][place.station]; }
   /// The place of the same node in the zone behind the end of a corner; nothing where the row ends.
   [[nodiscard]] std::optional<CornerPlace> across(CornerPlace const& end) const;
 

@@ -42,12 +42,12 @@ Vec3 wall_normal(Mesh const& mesh, CornerFrame const& corner, int station, int w
   int const before = std::max(0, station - 1), behind = std::min(corner.stations() - 1, station + 1);
   Vec3 const along = node_at(mesh, corner, behind, {0, 0}) - node_at(mesh, corner, before, {0, 0});
   std::array<int, 2> next{0, 0};
-  next[std::size_t(1 - wall)] = 1;
+  next[1 - wall] = 1;
   return unit(cross(along, node_at(mesh, corner, station, next) - node_at(mesh, corner, station, {0, 0})));
 }
 
 int last_node(WallSheets const& sheets, CornerFrame const& corner, int wall) {
-  Sheet const& across = *corner.sheet[std::size_t(1 - wall)];  // its layers are what the line runs through
+  Sheet const& across = *corner.sheet[1 - wall];  // its layers are what the line runs through
   int const cells = corner.cells(1 - wall);
   auto const& own = sheets.of_zone[corner.zone_number()];
   bool const opposite = std::any_of(own.begin(), own.end(), [&](int n) {

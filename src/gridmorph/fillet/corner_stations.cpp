@@ -27,7 +27,7 @@ Vec3 along_row(std::vector<Vec3> const& nodes, int number, bool closed) {
   int const n = int(nodes.size());
   int const before = closed ? (number + n - 1) % n : std::max(0, number - 1);
   int const behind = closed ? (number + 1) % n : std::min(n - 1, number + 1);
-  return unit(nodes[std::size_t(behind)] - nodes[std::size_t(before)]);
+  return unit(nodes[behind] - nodes[before]);
 }
 
 /// Where a fillet has to end although its corner goes on: at stations beside one that is on no wall.
@@ -46,7 +46,7 @@ OpenEnds open_ends(std::vector<CornerFrame> const& corners, CornerRows const& ro
     std::vector<char> bare(row.places.size(), 1), on_walls(row.places.size(), 1);
     for (std::size_t c = 0; c < corners.size(); ++c)
       for (int a = 0; a < corners[c].stations(); ++a) {
-        if (&rows.rows()[std::size_t(rows.row_of(c))] != &row) continue;
+        if (&rows.rows()[rows.row_of(c)] != &row) continue;
         auto const n = std::size_t(rows.number({c, a}));
         (filled[c][a] ? bare : on_walls)[n] = 0;
       }
@@ -118,11 +118,11 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
                             .row = &rows_[in_row],
                             .edge = {}};
       for (int wall = 0; wall < 2; ++wall)
-        station.into_mesh[std::size_t(wall)] =
+        station.into_mesh[wall] =
             unit(node_at(mesh, corner, a, wall == 0 ? std::array<int, 2>{1, 0} : std::array<int, 2>{0, 1}) - root);
       double radius = filled[c][a] ? checked_radius(options, root) : 0;
       double const over = options.run_out * radius;
-      if (over > 0) radius *= smoothstep(ends.away[in_row][std::size_t(number)] / over);
+      if (over > 0) radius *= smoothstep(ends.away[in_row][number] / over);
       std::optional<Ball> ball;
       if (radius > 1e-9 * station.line[0].curve.length()) {
         ball = rolling_ball({station.surface, &station.line[0].curve, station.into_mesh}, radius);
@@ -133,7 +133,7 @@ CornerStations::CornerStations(Mesh const& mesh, Links const& links, WallSheets 
         ball->centre = root;
       }
       // A place that two zones share has a ball if it has one in either of them.
-      if (Ball& there = rows_[in_row].balls[std::size_t(number)]; there.radius == 0) there = *ball;
+      if (Ball& there = rows_[in_row].balls[number]; there.radius == 0) there = *ball;
       stations_.back().push_back(std::move(station));
     }
   }

@@ -24,7 +24,7 @@ class CornerStations {
 
   [[nodiscard]] std::vector<CornerFrame> const& corners() const { return corners_; }
   [[nodiscard]] CornerStation const& station(std::size_t corner, int station) const {
-    return stations_[corner][std::size_t(station)];
+    return stations_[corner][station];
   }
   /// Fills in what a result says about balls and ends.
   void describe(FilletResult& result) const;

@@ -49,8 +49,7 @@ class Cut {
       throw MeshError(lattice_.elements().mesh().source + ": the corner's " +
                       describe_element(lattice_.elements().mesh(), cell.element) +
                       " would be cut twice, along two root lines; fill them one at a time, or with fewer layers");
-    for (int end = 0; end < 2; ++end)
-      faces_[sorted(CornerLattice::end_face(cell, end))] = cell.node[std::size_t(end)][0][0];
+    for (int end = 0; end < 2; ++end) faces_[sorted(CornerLattice::end_face(cell, end))] = cell.node[end][0][0];
   }
 
   CornerLattice const& lattice_;
@@ -114,7 +113,7 @@ Mesh cut_corners(CornerLattice const& lattice, std::vector<CornerCell> const& ce
           out.elements.nodes.add(prism);
         }
       } else {
-        out.elements.type.push_back(mesh.elements.type[std::size_t(e)]);
+        out.elements.type.push_back(mesh.elements.type[e]);
         out.elements.nodes.add(mesh.elements.nodes[e]);
       }
     }
@@ -122,13 +121,12 @@ Mesh cut_corners(CornerLattice const& lattice, std::vector<CornerCell> const& ce
   }
   first_piece.push_back(Index32(out.elements.size()));
   for (Patch& patch : out.patches) patch.faces = cut_faces(cut, patch.faces);
-  for (Index32& e : out.polyhedra.element) e = first_piece[std::size_t(e)];
+  for (Index32& e : out.polyhedra.element) e = first_piece[e];
   for (Subset& subset : out.subsets) {
     subset.faces = cut_faces(cut, subset.faces);
     std::vector<Index32> elements;
     for (Index32 const e : subset.elements)
-      for (Index32 piece = first_piece[std::size_t(e)]; piece < first_piece[std::size_t(e) + 1]; ++piece)
-        elements.push_back(piece);
+      for (Index32 piece = first_piece[e]; piece < first_piece[e + 1]; ++piece) elements.push_back(piece);
     subset.elements = std::move(elements);
   }
   return out;

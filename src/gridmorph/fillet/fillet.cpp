@@ -134,7 +134,7 @@ class Layers {
           p[u] = a - part.box.begin[u];
           p[v] = b - part.box.begin[v];
           p[sheet.axis] = sheet.side == 0 ? n : layers_.made - n;
-          to.set(zone.node(p), nodes[std::size_t(n)]);
+          to.set(zone.node(p), nodes[n]);
         }
       }
   }
@@ -147,10 +147,10 @@ class Layers {
     for (std::size_t c = 0; c < arc_nodes_.size(); ++c) {
       CornerFrame const& corner = stations_.corners()[c];
       for (int wall = 0; wall < 2; ++wall) {
-        ArcNodes const& nodes = arc_nodes_[c][std::size_t(wall)];
+        ArcNodes const& nodes = arc_nodes_[c][wall];
         if (nodes.last < 0) continue;
         // Faces beside the last node and beside the outermost stations have nodes of both.
-        out.push_back({c, wall, nodes.last + 1 - stations_.station(c, 0).line[std::size_t(wall)].layers,
+        out.push_back({c, wall, nodes.last + 1 - stations_.station(c, 0).line[wall].layers,
                        std::max(0, nodes.first_station - 1), std::min(corner.stations() - 1, nodes.last_station + 1)});
       }
     }
@@ -208,7 +208,7 @@ class Layers {
       return points;
     }
     Vec3 const off_wall = unit(points[1] - points[0]);
-    Vec3 const into_end = unit(points[std::size_t(cells) + 1] - points[std::size_t(cells) - 1]);
+    Vec3 const into_end = unit(points[cells + 1] - points[cells - 1]);
     points.pop_back();
     OldLayers const old(std::move(points), layers_.made);
     if (old.arcs[1] < 0.98 * old.curve.arc(1)) first_cells_kept_ = false;
@@ -237,7 +237,7 @@ class Layers {
       LayerLine const before{old.at(0), off_wall, old.at(old.arcs.size() - 1), into_end};
       LayerLine const after{foot.point, foot.normal, before.end,
                             unit(g * unit(station.inner - middle.point) + (1 - g) * into_end)};
-      Mitre const& mitre = mitres_[c][std::size_t(a)];
+      Mitre const& mitre = mitres_[c][a];
       auto const own_shares = old.shares();
       auto const places_before = before.places(own_shares, old.arcs[1]);
       auto const places_after = after.places(mean_shares(own_shares, mitre.shares, g),

@@ -45,7 +45,7 @@ int layers_for_radius(Mesh const& mesh, std::vector<CornerFrame> const& corners,
   for (auto const& corner : corners) {
     auto const filled = filled_stations(mesh, corner, options);
     for (int a = 0; a < corner.stations(); ++a) {
-      if (!filled[std::size_t(a)]) continue;
+      if (!filled[a]) continue;
       auto const points = line_points(mesh, corner, a, 1 - wall, most);
       Vec3 const normal = wall_normal(mesh, corner, a, wall);
       for (std::size_t n = 1; n < points.size(); ++n) height[n] += std::abs(dot(points[n] - points[0], normal));
@@ -55,7 +55,7 @@ int layers_for_radius(Mesh const& mesh, std::vector<CornerFrame> const& corners,
   }
   if (!any) throw MeshError("no node of the corner is on both the blade and the end wall");
   int n = 1;
-  while (n < most && height[std::size_t(n)] < room[std::size_t(wall)] * radius) ++n;
+  while (n < most && height[n] < room[wall] * radius) ++n;
   return n;
 }
 
@@ -66,16 +66,15 @@ void even_out(Mesh const& mesh, std::vector<CornerFrame> const& corners, FilletO
   for (auto const& corner : corners) {
     auto const filled = filled_stations(mesh, corner, options);
     for (int a = 0; a < corner.stations(); ++a) {
-      if (filled[std::size_t(a)]) continue;
+      if (filled[a]) continue;
       auto const width = [&](int wall) {
         std::array<int, 2> off{0, 0};
-        off[std::size_t(wall)] = layers[std::size_t(wall)];
+        off[wall] = layers[wall];
         return distance(node_at(mesh, corner, a, off), node_at(mesh, corner, a, {0, 0}));
       };
       for (int wall = 0; wall < 2; ++wall)
-        while (options.layers[std::size_t(wall)] == 0 && layers[std::size_t(wall)] < most[std::size_t(wall)] &&
-               width(1 - wall) > flattest * width(wall))
-          ++layers[std::size_t(wall)];
+        while (options.layers[wall] == 0 && layers[wall] < most[wall] && width(1 - wall) > flattest * width(wall))
+          ++layers[wall];
     }
   }
 }
@@ -96,7 +95,7 @@ void make_room(Mesh const& mesh, std::vector<CornerFrame> const& corners, Fillet
       auto const points = line_points(mesh, corner, a, 1 - int(fewer), most[fewer]);
       auto const other = line_points(mesh, corner, a, int(fewer), made);
       double const first = distance(points[0], points[1]);
-      auto const height = [&] { return distance(points[0], points[std::size_t(enough)]); };
+      auto const height = [&] { return distance(points[0], points[enough]); };
       while (enough < std::min(made, most[fewer]) && height() < spare * made * first) ++enough;
       fits = fits && (enough == layers[fewer] || height() <= highest * distance(other.front(), other.back()));
     }

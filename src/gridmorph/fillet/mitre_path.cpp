@@ -82,7 +82,7 @@ class PathFinder {
       std::optional<CornerCell> cell = roots_[k];
       std::array<std::vector<double>, 2> heights;
       std::array<double, 2> height{0, 0};
-      auto const enough = std::size_t(reach_.layers[std::size_t(wall)]);
+      auto const enough = std::size_t(reach_.layers[wall]);
       while (cell && heights[0].size() < 10000) {
         for (std::size_t end = 0; end < 2; ++end) {
           auto const& node = cell->node[end];
@@ -93,7 +93,7 @@ class PathFinder {
         cell = lattice_.off(*cell, wall);
       }
       for (std::size_t end = 0; end < 2; ++end) {
-        auto& known = heights_[(k + end) % line_.places.size()].off[std::size_t(wall)];
+        auto& known = heights_[(k + end) % line_.places.size()].off[wall];
         if (known.empty() || heights[end].size() < known.size()) known = heights[end];
       }
     }
@@ -161,12 +161,12 @@ std::set<Index32> neighbours(JoinedElements const& elements, Index32 place, std:
   std::set<Index32> out;
   Mesh const& mesh = elements.mesh();
   for (Index32 const e : of) {
-    ElementType const type = mesh.elements.type[std::size_t(e)];
+    ElementType const type = mesh.elements.type[e];
     auto const corners = mesh.elements.corners(e);
     for (int k = 0; type != ElementType::polyhedron && k < n_edges(type); ++k)
       for (int end = 0; end < 2; ++end)
-        if (elements.place(corners[std::size_t(edge_corner(type, k, end))]) == place)
-          out.insert(elements.place(corners[std::size_t(edge_corner(type, k, 1 - end))]));
+        if (elements.place(corners[edge_corner(type, k, end)]) == place)
+          out.insert(elements.place(corners[edge_corner(type, k, 1 - end)]));
   }
   return out;
 }

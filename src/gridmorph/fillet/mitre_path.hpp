@@ -22,7 +22,7 @@ class JoinedElements {
 
   [[nodiscard]] Mesh const& mesh() const { return mesh_; }
   [[nodiscard]] UnstructuredTopology const& topology() const { return topology_; }
-  [[nodiscard]] Index32 place(Index32 node) const { return place_[std::size_t(node)]; }
+  [[nodiscard]] Index32 place(Index32 node) const { return place_[node]; }
   /// All nodes at a place.
   [[nodiscard]] std::vector<Index32> nodes_at(Index32 place) const;
   /// Elements that have a place among their corners, ascending in each zone.
@@ -51,10 +51,10 @@ class WallEdges {
   [[nodiscard]] bool on(int wall, Index32 a, Index32 b) const { return (walls_of(a, b) & (1 << wall)) != 0; }
   [[nodiscard]] bool on_none(Index32 a, Index32 b) const { return walls_of(a, b) == 0; }
   /// Which wall a boundary face is of; -1: neither.
-  [[nodiscard]] int wall_of_face(Index32 face) const { return face < 0 ? -1 : wall_[std::size_t(face)]; }
+  [[nodiscard]] int wall_of_face(Index32 face) const { return face < 0 ? -1 : wall_[face]; }
   /// Mean of the faces' normals at a place, weighted by area, into the mesh; zero where there is none.
   [[nodiscard]] Vec3 normal(int wall, Index32 place) const;
-  [[nodiscard]] bool on(int wall, Index32 place) const { return normals_[std::size_t(wall)].contains(place); }
+  [[nodiscard]] bool on(int wall, Index32 place) const { return normals_[wall].contains(place); }
   /// Ends of the edges that both walls have, ascending.
   [[nodiscard]] std::vector<std::array<Index32, 2>> common() const;
 

@@ -19,8 +19,7 @@ Vec3 inward(Vec3 const& normal, Vec3 const& into_mesh) { return dot(normal, into
 Vec3 Ball::to_arc(int wall, double share) const {
   double const whole = half_angle_rad, angle = share * whole;
   if (whole < 1e-9) return to_middle;
-  return (1 / std::sin(whole)) *
-         (std::sin(whole - angle) * to_middle + std::sin(angle) * to_contact[std::size_t(wall)]);
+  return (1 / std::sin(whole)) * (std::sin(whole - angle) * to_middle + std::sin(angle) * to_contact[wall]);
 }
 
 double nearest_arc(ArcCurve const& line, Vec3 const& p) {

@@ -52,9 +52,9 @@ void require_layers(JoinedElements const& elements, WallEdges const& edges, std:
   for (Index32 const node : elements.nodes_at(edge[0]))
     for (Index32 const f : elements.topology().faces_of_nodes[node]) {
       int const wall = edges.wall_of_face(f);
-      Index32 const e = faces.element[std::size_t(f)];
+      Index32 const e = faces.element[f];
       if (wall < 0 || !elements.has(e, edge[1])) continue;
-      ElementType const type = mesh.elements.type[std::size_t(e)];
+      ElementType const type = mesh.elements.type[e];
       if (type == ElementType::prism || type == ElementType::hexahedron) continue;
       throw MeshError(
           mesh.source + ": " + describe_element(mesh, e) + " has a face on the " + (wall == 0 ? "blade" : "end wall") +
@@ -99,22 +99,22 @@ bool JoinedElements::has(Index32 element, Index32 place) const { return node_at(
 
 Index32 JoinedElements::node_at(Index32 element, Index32 place) const {
   for (Index32 const n : mesh_.elements.corners(element))
-    if (place_[std::size_t(n)] == place) return n;
+    if (place_[n] == place) return n;
   return -1;
 }
 
 WallEdges::WallEdges(JoinedElements const& elements, BoundaryFacePatches const& face_patches,
                      std::span<int const> blade, std::span<int const> end_wall) {
   BoundaryFaces const& faces = elements.topology().boundary;
-  wall_.assign(std::size_t(faces.size()), -1);
+  wall_.assign(faces.size(), -1);
   for (Index f = 0; f < faces.size(); ++f) {
-    int const patch = face_patches.patch[std::size_t(f)];
+    int const patch = face_patches.patch[f];
     bool const of_blade = std::find(blade.begin(), blade.end(), patch) != blade.end();
     bool const of_end_wall = std::find(end_wall.begin(), end_wall.end(), patch) != end_wall.end();
     if (patch < 0 || of_blade == of_end_wall) continue;
-    wall_[std::size_t(f)] = of_blade ? 0 : 1;
+    wall_[f] = of_blade ? 0 : 1;
     auto const nodes = faces.nodes[f];
-    Vec3 const normal = inward_normal(elements.mesh(), nodes, faces.element[std::size_t(f)]);
+    Vec3 const normal = inward_normal(elements.mesh(), nodes, faces.element[f]);
     for (Index32 const n : nodes) normals_[of_blade ? 0 : 1][elements.place(n)] += normal;
     for (std::size_t k = 0; k < nodes.size(); ++k)
       edges_[key(elements.place(nodes[k]), elements.place(nodes[(k + 1) % nodes.size()]))] |= of_blade ? 1 : 2;
@@ -122,8 +122,8 @@ WallEdges::WallEdges(JoinedElements const& elements, BoundaryFacePatches const& 
 }
 
 Vec3 WallEdges::normal(int wall, Index32 place) const {
-  auto const found = normals_[std::size_t(wall)].find(place);
-  return found == normals_[std::size_t(wall)].end() ? Vec3{} : unit(found->second);
+  auto const found = normals_[wall].find(place);
+  return found == normals_[wall].end() ? Vec3{} : unit(found->second);
 }
 
 int WallEdges::walls_of(Index32 a, Index32 b) const {
@@ -141,8 +141,8 @@ std::vector<std::array<Index32, 2>> WallEdges::common() const {
 
 bool is_foreign(JoinedElements const& elements, WallEdges const& edges, Index face) {
   if (edges.wall_of_face(Index32(face)) >= 0) return false;
-  int const c = elements.topology().boundary.connection[std::size_t(face)];
-  return c < 0 || elements.mesh().connections[std::size_t(c / 2)].periodic.has_value();
+  int const c = elements.topology().boundary.connection[face];
+  return c < 0 || elements.mesh().connections[c / 2].periodic.has_value();
 }
 
 std::vector<Index32> faces_across_end(JoinedElements const& elements, WallEdges const& edges, RootLine const& line,
@@ -157,7 +157,7 @@ std::vector<Index32> faces_across_end(JoinedElements const& elements, WallEdges 
   std::vector<Index32> out;
   for (Index32 const node : elements.nodes_at(place))
     for (Index32 const f : elements.topology().faces_of_nodes[node]) {
-      Index32 const element = faces.element[std::size_t(f)];
+      Index32 const element = faces.element[f];
       if (!is_foreign(elements, edges, f) || std::find(last.begin(), last.end(), element) == last.end()) continue;
       Vec3 const normal = inward_normal(elements.mesh(), faces.nodes[f], element);
       if (std::abs(dot(normal, along)) > across * norm(normal)) out.push_back(f);
@@ -178,7 +178,7 @@ std::vector<RootLine> find_root_lines(JoinedElements const& elements, WallEdges 
   for (std::size_t k = 0; k < common.size(); ++k) {
     for (Index32 const p : common[k]) at[p].push_back(k);
     only[k] = only_element(elements, common[k]);
-    if (only[k] >= 0 && mesh.elements.type[std::size_t(only[k])] != ElementType::hexahedron)
+    if (only[k] >= 0 && mesh.elements.type[only[k]] != ElementType::hexahedron)
       throw MeshError(
           mesh.source + ": " + describe_element(mesh, only[k]) +
           " has a face on the blade and one on the end wall and is no hexahedron, so it would be flat where a "

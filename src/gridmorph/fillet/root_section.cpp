@@ -76,7 +76,7 @@ Vec3 BetweenSections::turned(Vec3 const& a, Vec3 const& b) const {
 }
 
 WallPoint BetweenSections::wall_at(int w, double s) const {
-  WallPoint const a = a_.wall[std::size_t(w)].at(s), b = b_.wall[std::size_t(w)].at(s);
+  WallPoint const a = a_.wall[w].at(s), b = b_.wall[w].at(s);
   return {turned(a.point, b.point), unit(mean(a.normal, b.normal))};
 }
 
@@ -86,7 +86,7 @@ CornerPoint BetweenSections::point(std::array<double, 2> const& off) const {
 }
 
 BetweenSections::Arc BetweenSections::arc(int w, double share) const {
-  WallPoint const contact = wall_at(w, mean(a_.contact[std::size_t(w)], b_.contact[std::size_t(w)]));
+  WallPoint const contact = wall_at(w, mean(a_.contact[w], b_.contact[w]));
   Vec3 const centre = turned(a_.centre, b_.centre), over_contact = contact.point + radius() * contact.normal;
   return {centre + share * (over_contact - centre),
           between(unit(mean(a_.to_middle, b_.to_middle)), -contact.normal, share)};

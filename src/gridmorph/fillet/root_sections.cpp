@@ -201,7 +201,7 @@ bool RootSections::beyond_end(SectionPlace const& at, Vec3 const& p) const {
 std::optional<SectionPlace> RootSections::nearest_section(Vec3 const& p, Vec3 const& blade_normal,
                                                           double within) const {
   auto const same_way = [&](int k) {
-    Segment const& s = segments_[std::size_t(k)];
+    Segment const& s = segments_[k];
     auto const& line = sections_[s.line];
     return std::max(dot(blade_normal, line[s.first].blade_normal), dot(blade_normal, line[s.second].blade_normal)) >=
            same_side;
@@ -209,7 +209,7 @@ std::optional<SectionPlace> RootSections::nearest_section(Vec3 const& p, Vec3 co
   auto const hit = blade_normal == Vec3{} ? tree_.closest_within(p, within) : tree_.closest_of(p, same_way);
   if (hit.triangle < 0 || hit.distance >= within) return {};
 
-  Segment at = segments_[std::size_t(hit.triangle)];
+  Segment at = segments_[hit.triangle];
   int last_step = 0;
   for (int n = 0; n < 64; ++n) {
     double const from = ahead(p, at.line, at.first), to = ahead(p, at.line, at.second);
@@ -242,8 +242,8 @@ void RootSections::limit_reach(JoinedElements const& elements, BoundaryFacePatch
   Mesh const& mesh = elements.mesh();
   BoundaryFaces const& faces = elements.topology().boundary;
   auto const which = [&](Index f) {  // patch, or side of a connection
-    int const patch = face_patches.patch[std::size_t(f)];
-    return patch >= 0 ? std::pair(0, patch) : std::pair(1, int(faces.connection[std::size_t(f)]));
+    int const patch = face_patches.patch[f];
+    return patch >= 0 ? std::pair(0, patch) : std::pair(1, int(faces.connection[f]));
   };
   // A line may end on a boundary, which then lies across it.
   std::set<std::pair<int, int>> lines_end_on;

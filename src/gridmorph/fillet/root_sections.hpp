@@ -81,10 +81,10 @@ class MitreRelations {
 
   /// The relation of a wall between the distance of a layer from it and its distance from the new wall in the mitre,
   /// where lines of the other wall come to its first place and where it leaves its last one: a layer may have several.
-  [[nodiscard]] Relation const& first(int wall) const { return first_[std::size_t(wall)]; }
-  [[nodiscard]] Relation const& last(int wall) const { return last_[std::size_t(wall)]; }
+  [[nodiscard]] Relation const& first(int wall) const { return first_[wall]; }
+  [[nodiscard]] Relation const& last(int wall) const { return last_[wall]; }
   /// The relation of a wall between the distance of a line from the other wall and where it begins on the new wall.
-  [[nodiscard]] Relation const& start(int wall) const { return start_[std::size_t(wall)]; }
+  [[nodiscard]] Relation const& start(int wall) const { return start_[wall]; }
 
  private:
   std::array<Relation, 2> first_, last_, start_;

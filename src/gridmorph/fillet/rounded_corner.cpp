@@ -125,30 +125,30 @@ Coordinates round_corners(JoinedElements const& elements, WallEdges const& edges
   Mesh const& mesh = elements.mesh();
   HostInstance const host;
   CornerRounding const rounding(elements, edges, sections, walls);
-  std::vector<Move> moves(std::size_t(mesh.n_nodes()));
+  std::vector<Move> moves(mesh.n_nodes());
   detail::for_all_parts(host, "gridmorph::round_corners", (mesh.n_nodes() + share - 1) / share, [&](Index part) {
     for (Index n = share * part; n < std::min(mesh.n_nodes(), share * (part + 1)); ++n)
-      if (elements.place(Index32(n)) == Index32(n)) moves[std::size_t(n)] = rounding.move_of(Index32(n));
+      if (elements.place(Index32(n)) == Index32(n)) moves[n] = rounding.move_of(Index32(n));
   });
 
   std::array<std::vector<Index32>, 2> on_walls;
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (std::size_t w = 0; w < 2; ++w)
-      if (moves[std::size_t(n)].near && edges.on(int(w), Index32(n))) on_walls[w].push_back(Index32(n));
+      if (moves[n].near && edges.on(int(w), Index32(n))) on_walls[w].push_back(Index32(n));
   std::array<TargetTree, 2> const trees{tree_of(mesh, on_walls[0]), tree_of(mesh, on_walls[1])};
   Coordinates out(mesh.n_nodes());
-  on_arc.assign(std::size_t(mesh.n_nodes()), 0);
+  on_arc.assign(mesh.n_nodes(), 0);
   detail::for_all(host, "gridmorph::round_corners (places)", mesh.n_nodes(), [&](Index n) {
     Index32 const place = elements.place(Index32(n));
-    Move const& move = moves[std::size_t(place)];
-    on_arc[std::size_t(n)] = move.on_arc ? 1 : 0;
+    Move const& move = moves[place];
+    on_arc[n] = move.on_arc ? 1 : 0;
     Vec3 const p = mesh.coordinates[n];
     if (move.stays()) return out.set(n, p);
     Vec3 mended = move.mended;
     if (!edges.on(0, place) && !edges.on(1, place)) {
       auto const w = std::size_t(move.wall);
       if (int const k = trees[w].closest(p).triangle; k >= 0)
-        mended = ((1 - move.still) * (1 - move.bend)) * moves[std::size_t(on_walls[w][std::size_t(k)])].mended;
+        mended = ((1 - move.still) * (1 - move.bend)) * moves[on_walls[w][k]].mended;
     }
     out.set(n, p + move.shift + mended);
   });

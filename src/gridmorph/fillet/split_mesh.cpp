@@ -119,7 +119,7 @@ class Splitter {
   }
 
   void add(int p) {
-    Patch const& patch = old_.patches[std::size_t(p)];
+    Patch const& patch = old_.patches[p];
     for (int n : parts_[patch.zone]) {
       auto const piece = common(patch.range, out_.zones[n].box);
       if (!piece) continue;

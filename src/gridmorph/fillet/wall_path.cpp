@@ -47,7 +47,7 @@ Ball const* BallRow::from(int number, int steps) const {
   int const n = int(balls.size());
   int k = number + steps;
   if (closed) k = ((k % n) + n) % n;
-  return k < 0 || k >= n ? nullptr : &balls[std::size_t(k)];
+  return k < 0 || k >= n ? nullptr : &balls[k];
 }
 
 Vec3 BallRow::point(double station, int wall, double share) const {

@@ -25,7 +25,7 @@ struct Ball {
   /// The direction from the centre to the arc, unit; `share`: of the way from its middle to the contact with wall 0 or
   /// 1.
   [[nodiscard]] Vec3 to_arc(int wall, double share) const;
-  [[nodiscard]] Vec3 contact(int wall) const { return centre + radius * to_contact[std::size_t(wall)]; }
+  [[nodiscard]] Vec3 contact(int wall) const { return centre + radius * to_contact[wall]; }
 };
 
 /// A corner between two walls at one of its nodes.
@@ -99,7 +99,7 @@ struct CornerStation {
   BallRow const* row = nullptr;
   std::array<FilletEdge, 2> edge;  ///< blade, end wall
 
-  [[nodiscard]] Ball const& ball() const { return row->balls[std::size_t(number)]; }
+  [[nodiscard]] Ball const& ball() const { return row->balls[number]; }
   [[nodiscard]] bool sharp() const { return ball().radius == 0; }
   /// Finds the edges, once the row is whole.
   void find_edges();

@@ -83,7 +83,7 @@ WallPoint WallProfile::at(double s) const {
   int const last = int(points_.size()) - 1;
   int const k = std::clamp(int(std::floor(s / step_)), 0, last - 1);
   double const t = s / step_ - k;
-  WallPoint const &a = points_[std::size_t(k)], &b = points_[std::size_t(k) + 1];
+  WallPoint const &a = points_[k], &b = points_[k + 1];
   double const turned = std::clamp(t, 0.0, 1.0);
   return {a.point + t * (b.point - a.point), unit((1 - turned) * a.normal + turned * b.normal)};
 }

@@ -44,7 +44,7 @@ Vec3 ArcCurve::tangent(double s) const {
 
 std::size_t ArcCurve::piece(double s) const {
   return std::size_t(piece_at(
-      int(arc_.size()), [&](int k) { return arc_[std::size_t(k)]; }, s));
+      int(arc_.size()), [&](int k) { return arc_[k]; }, s));
 }
 
 }  // namespace gridmorph

@@ -27,13 +27,13 @@ struct FacetBoxes {
     // One per level that was passed, and two.
     std::array<std::pair<double, int>, kernels::FacetTreeView::max_depth + 1> waiting;
     std::size_t n_waiting = 0;
-    auto const wait = [&](int box) { waiting[n_waiting++] = {boxes[std::size_t(box)].distance2(p), box}; };
+    auto const wait = [&](int box) { waiting[n_waiting++] = {boxes[box].distance2(p), box}; };
     if (!boxes.empty()) wait(0);
     while (n_waiting > 0) {
       auto const [away, b] = waiting[--n_waiting];
       if (away > limit()) continue;
-      kernels::FacetBox const& box = boxes[std::size_t(b)];
-      for (int n = box.first; n < box.first + box.count; ++n) look(order[std::size_t(n)]);
+      kernels::FacetBox const& box = boxes[b];
+      for (int n = box.first; n < box.first + box.count; ++n) look(order[n]);
       if (box.count > 0) continue;
       wait(box.first);
       wait(box.first + 1);

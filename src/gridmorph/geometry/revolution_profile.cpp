@@ -126,14 +126,14 @@ class LeastSquares {
     for (int c = 0; c < n_; ++c) reflect(c);
     for (int c = n_ - 1; c >= 0; --c) {
       double rest = at(c, n_);
-      for (int k = c + 1; k < n_; ++k) rest -= at(c, k) * x[std::size_t(k)];
-      x[std::size_t(c)] = at(c, c) != 0 ? rest / at(c, c) : 0;
+      for (int k = c + 1; k < n_; ++k) rest -= at(c, k) * x[k];
+      x[c] = at(c, c) != 0 ? rest / at(c, c) : 0;
     }
     return x;
   }
 
  private:
-  double& at(int row, int column) { return rows_[std::size_t(row)][std::size_t(column)]; }
+  double& at(int row, int column) { return rows_[row][column]; }
 
   /// Makes what is below the diagonal of one column zero.
   void reflect(int c) {
@@ -302,8 +302,8 @@ class Slopes {
       double const weight = 1 / (1 + lacking * std::pow(std::abs(t), degree + 1) / (noise_counts * noise_));
       LeastSquares::Row row{};
       double power = weight;
-      for (int k = 0; k < degree; ++k) row[std::size_t(k)] = power *= t;
-      row[std::size_t(degree)] = weight * (p_[j].second - r);
+      for (int k = 0; k < degree; ++k) row[k] = power *= t;
+      row[degree] = weight * (p_[j].second - r);
       fit.add(row);
     }
     auto const c = fit.solution();
@@ -389,8 +389,8 @@ class Slopes {
     for (bool more = one_sided && !is_table(); more && int(out.size()) < 2 * each_side;) {
       Stencil const& longer = n_left < n_right ? right : left;
       int& used = n_left < n_right ? n_right : n_left;
-      more = used < int(longer.size()) && beyond_noise(i, out, longer[std::size_t(used)]) > 0;
-      if (more) out.push_back(longer[std::size_t(used++)]);
+      more = used < int(longer.size()) && beyond_noise(i, out, longer[used]) > 0;
+      if (more) out.push_back(longer[used++]);
     }
     return out;
   }

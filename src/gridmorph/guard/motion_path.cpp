@@ -63,8 +63,8 @@ std::vector<Vec3> MotionPath::at(double share) const {
   std::vector<Mat3> rotations;
   for (Body const& b : bodies_) rotations.push_back(rotation_by(share * b.turn));
   for (Follower const& f : followers_) {
-    Vec3 const turned = rotations[std::size_t(f.body)] * (f.arm + share * f.rest);
-    out[f.slot] = share * bodies_[std::size_t(f.body)].shift + (turned - f.arm);
+    Vec3 const turned = rotations[f.body] * (f.arm + share * f.rest);
+    out[f.slot] = share * bodies_[f.body].shift + (turned - f.arm);
   }
   return out;
 }

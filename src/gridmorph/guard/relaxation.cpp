@@ -49,7 +49,7 @@ class Relaxation {
       std::vector<Index> const middles = middles_of(nodes);
       std::vector<Vec3> before;
       for (Index32 const n : nodes) before.push_back(x_[n]);
-      for (Index const row : middles) before.push_back(x_[plan_.middle.target[std::size_t(row)]]);
+      for (Index const row : middles) before.push_back(x_[plan_.middle.target[row]]);
       if (shapes)
         smooth_shapes(nodes, sweeps);
       else
@@ -59,7 +59,7 @@ class Relaxation {
       if (after.worse_than(now)) {
         for (std::size_t k = 0; k < nodes.size(); ++k) x_.set(nodes[k], before[k]);
         for (std::size_t m = 0; m < middles.size(); ++m)
-          x_.set(plan_.middle.target[std::size_t(middles[m])], before[nodes.size() + m]);
+          x_.set(plan_.middle.target[middles[m]], before[nodes.size() + m]);
         copy_coincident();
         if (std::exchange(shapes, false)) continue;
         if ((sweeps /= 2) == 0) break;
@@ -97,7 +97,7 @@ class Relaxation {
   };
 
   [[nodiscard]] State state(Index32 e) const {
-    double const sign = signs_[std::size_t(e)], now = tables_.determinant(now_, e, sign);
+    double const sign = signs_[e], now = tables_.determinant(now_, e, sign);
     if (now > doubtful_determinant) return State::sound;  // no determinant is above 1
     if (negative(e, sign, now_) && !negative(e, sign, baseline_))
       return tables_.flat_element(baseline_, now_, e, sign).stays_flat() ? State::sound : State::inverted;
@@ -108,14 +108,14 @@ class Relaxation {
   }
 
   [[nodiscard]] std::vector<Index32> all_elements() const {
-    std::vector<Index32> all(std::size_t(mesh_.n_elements()));
+    std::vector<Index32> all(mesh_.n_elements());
     std::iota(all.begin(), all.end(), Index32(0));
     return all;
   }
   [[nodiscard]] Judged judge(std::vector<Index32> const& elements) const {
     std::vector<State> states(elements.size());
     detail::for_all({}, "gridmorph::find_bad_elements", Index(elements.size()),
-                    [&](Index n) { states[std::size_t(n)] = state(elements[std::size_t(n)]); });
+                    [&](Index n) { states[n] = state(elements[n]); });
     Judged out;
     for (std::size_t n = 0; n < elements.size(); ++n) {
       if (states[n] != State::sound) out.bad.push_back(elements[n]);
@@ -127,11 +127,11 @@ class Relaxation {
   /// Elements that change when `nodes` move, and those that were bad; ascending.
   [[nodiscard]] std::vector<Index32> touched(std::vector<Index32> const& nodes, std::vector<Index> const& middles,
                                              std::vector<Index32> const& bad) const {
-    std::vector<std::uint8_t> seen(std::size_t(mesh_.n_elements()), 0);
+    std::vector<std::uint8_t> seen(mesh_.n_elements(), 0);
     std::vector<Index32> found;
     auto const add_all = [&](std::span<Index32 const> elements) {
       for (Index32 const e : elements)
-        if (std::exchange(seen[std::size_t(e)], std::uint8_t(1)) == 0) found.push_back(e);
+        if (std::exchange(seen[e], std::uint8_t(1)) == 0) found.push_back(e);
     };
     auto const add = [&](Index32 n) { add_all(topology_.elements_of_nodes[n]); };
     add_all(bad);
@@ -144,10 +144,10 @@ class Relaxation {
   }
 
   void find_held() {
-    held_.assign(std::size_t(mesh_.n_nodes()), 0);
+    held_.assign(mesh_.n_nodes(), 0);
     for (auto const* list : {&plan_.known, &plan_.beside_known, &plan_.in_columns})
-      for (Index32 const n : *list) held_[std::size_t(n)] = 1;
-    for (Index32 const n : plan_.middle.target) held_[std::size_t(n)] = 1;
+      for (Index32 const n : *list) held_[n] = 1;
+    for (Index32 const n : plan_.middle.target) held_[n] = 1;
     find_middles();
   }
 
@@ -155,22 +155,20 @@ class Relaxation {
   /// node.
   void find_middles() {
     if (plan_.middle.size() == 0) return;
-    std::vector<std::uint8_t> on_boundary(std::size_t(mesh_.n_nodes()), 0);
-    for (Index32 const n : plan_.middle_on_boundary) on_boundary[std::size_t(n)] = 1;
-    for (PeriodicImage const& image : plan_.images)
-      on_boundary[std::size_t(image.node)] = on_boundary[std::size_t(image.owner)] = 1;
+    std::vector<std::uint8_t> on_boundary(mesh_.n_nodes(), 0);
+    for (Index32 const n : plan_.middle_on_boundary) on_boundary[n] = 1;
+    for (PeriodicImage const& image : plan_.images) on_boundary[image.node] = on_boundary[image.owner] = 1;
     std::vector<std::pair<Index32, Index32>> followed, holders;  // corner, row; row, element
-    std::vector<Index32> row_of(std::size_t(mesh_.n_nodes()), -1);
+    std::vector<Index32> row_of(mesh_.n_nodes(), -1);
     for (Index r = 0; r < plan_.middle.size(); ++r) {
-      row_of[std::size_t(plan_.middle.target[std::size_t(r)])] = Index32(r);
-      if (on_boundary[std::size_t(plan_.middle.target[std::size_t(r)])] != 0) continue;
-      for (Index k = plan_.middle.first[std::size_t(r)]; k < plan_.middle.first[std::size_t(r) + 1]; ++k)
-        followed.emplace_back(plan_.middle.item[std::size_t(k)], Index32(r));
+      row_of[plan_.middle.target[r]] = Index32(r);
+      if (on_boundary[plan_.middle.target[r]] != 0) continue;
+      for (Index k = plan_.middle.first[r]; k < plan_.middle.first[r + 1]; ++k)
+        followed.emplace_back(plan_.middle.item[k], Index32(r));
     }
     for (Index e = 0; e < mesh_.n_elements(); ++e)
       for (Index32 const n : mesh_.elements.nodes[e].subspan(mesh_.elements.corners(e).size()))
-        if (Index32 const r = row_of[std::size_t(plan_.graph.representative[std::size_t(n)])]; r >= 0)
-          holders.emplace_back(r, Index32(e));
+        if (Index32 const r = row_of[plan_.graph.representative[n]]; r >= 0) holders.emplace_back(r, Index32(e));
     middles_of_node_ = lists(followed, mesh_.n_nodes());
     elements_of_middle_ = lists(holders, plan_.middle.size());
   }
@@ -219,12 +217,12 @@ class Relaxation {
       return;
     }
     now = std::move(after);
-    pull_.resize(std::size_t(rows.size()));
-    pulled_.resize(std::size_t(rows.size()), 0);
+    pull_.resize(rows.size());
+    pulled_.resize(rows.size(), 0);
     for (Index const r : moved) {
-      Index32 const n = rows.target[std::size_t(r)];
-      pulled_[std::size_t(r)] = 1;
-      pull_[std::size_t(r)] += x_[n] - before[n];
+      Index32 const n = rows.target[r];
+      pulled_[r] = 1;
+      pull_[r] += x_[n] - before[n];
     }
   }
 
@@ -234,34 +232,34 @@ class Relaxation {
     Coordinates const& x = mesh_.coordinates;
     auto const displacement = [&](Index32 n) { return x_[n] - x[n]; };
     for (Index const r : middles) {
-      Index const first = rows.first[std::size_t(r)];
-      Vec3 const base = displacement(rows.item[std::size_t(first)]);
+      Index const first = rows.first[r];
+      Vec3 const base = displacement(rows.item[first]);
       Vec3 sum;
-      for (Index k = first + 1; k < rows.first[std::size_t(r) + 1]; ++k)
-        sum += double(rows.weight[std::size_t(k)]) * (displacement(rows.item[std::size_t(k)]) - base);
-      Index32 const n = rows.target[std::size_t(r)];
+      for (Index k = first + 1; k < rows.first[r + 1]; ++k)
+        sum += double(rows.weight[k]) * (displacement(rows.item[k]) - base);
+      Index32 const n = rows.target[r];
       x_.set(n, x[n] + (base + sum));
-      if (!pull_.empty()) x_.set(n, x_[n] + pull_[std::size_t(r)]);
+      if (!pull_.empty()) x_.set(n, x_[n] + pull_[r]);
     }
     if (!middles.empty()) copy_coincident();
   }
 
   std::vector<Index32> nodes_around(std::vector<Index32> const& bad, int rings) const {
-    std::vector<std::uint8_t> seen(std::size_t(mesh_.n_nodes()), 0);
+    std::vector<std::uint8_t> seen(mesh_.n_nodes(), 0);
     std::vector<Index32> found;
     auto const add = [&](Index32 n) {
-      if (seen[std::size_t(n)]) return;
-      seen[std::size_t(n)] = 1;
+      if (seen[n]) return;
+      seen[n] = 1;
       found.push_back(n);
     };
     for (Index32 const e : bad)
-      for (Index32 const c : mesh_.elements.corners(e)) add(plan_.graph.representative[std::size_t(c)]);
+      for (Index32 const c : mesh_.elements.corners(e)) add(plan_.graph.representative[c]);
     for (std::size_t begin = 0, ring = 0; ring < std::size_t(rings); ++ring) {
       std::size_t const end = found.size();
       for (; begin < end; ++begin)
         for (Index32 const m : plan_.graph.neighbours[found[begin]]) add(m);
     }
-    std::erase_if(found, [&](Index32 n) { return held_[std::size_t(n)] != 0; });
+    std::erase_if(found, [&](Index32 n) { return held_[n] != 0; });
     std::sort(found.begin(), found.end());
     return found;
   }

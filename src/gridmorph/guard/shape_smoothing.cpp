@@ -49,12 +49,11 @@ struct RegionPieces {
     }
     std::vector<Index32> number(region.cells.size(), -1);
     for (std::size_t c = 0; c < region.cells.size(); ++c) {
-      Index32& piece = number[std::size_t(sets.root(Index32(c)))];
+      Index32& piece = number[sets.root(Index32(c))];
       if (piece < 0) piece = Index32(count++);
       of_cell.push_back(piece);
     }
-    for (Index p = 0; p < region.n_points(); ++p)
-      of_point.push_back(of_cell[std::size_t(region.corners_of(p).front().cell)]);
+    for (Index p = 0; p < region.n_points(); ++p) of_point.push_back(of_cell[region.corners_of(p).front().cell]);
   }
 };
 
@@ -69,7 +68,7 @@ class ShapeSmoothing {
         options_(options),
         cells_(mesh_),
         looks_at_(mesh_.zones.size(), options.zones.empty() ? 1 : 0) {
-    for (int const zone : options.zones) looks_at_[std::size_t(zone)] = 1;
+    for (int const zone : options.zones) looks_at_[zone] = 1;
   }
 
   ShapeSmoothingReport run(MorphPlan const& plan) {
@@ -134,8 +133,8 @@ class ShapeSmoothing {
     }
     return true;
   }
-  [[nodiscard]] bool looks_at(int zone) const { return looks_at_[std::size_t(zone)] != 0; }
-  [[nodiscard]] double handedness(Index cell) const { return handedness_[std::size_t(cells_.zone(cell))]; }
+  [[nodiscard]] bool looks_at(int zone) const { return looks_at_[zone] != 0; }
+  [[nodiscard]] double handedness(Index cell) const { return handedness_[cells_.zone(cell)]; }
 
   static kernels::HexCell corners(Coordinates const& x, CellNodes const& nodes) {
     kernels::HexCell cell;
@@ -202,14 +201,13 @@ class ShapeSmoothing {
   [[nodiscard]] std::vector<Index> find_lost() const {
     constexpr Index part = 4096;
     Index const n_parts = (cells_.size() + part - 1) / part;
-    std::vector<std::vector<Index>> found(std::size_t(std::max<Index>(n_parts, 0)));
+    std::vector<std::vector<Index>> found(std::max<Index>(n_parts, 0));
     detail::for_all_parts(host_, "gridmorph::shape_smoothing::trigger", n_parts, [&](Index n) {
       for (Index cell = n * part; cell < std::min(cells_.size(), (n + 1) * part); ++cell) {
         if (!looks_at(cells_.zone(cell))) continue;
         CellNodes const nodes = cells_.nodes(cell);
         double const hand = handedness(cell);
-        if ((suspicious(nodes, hand) || broken(nodes, hand)) && shape(nodes, hand).lost)
-          found[std::size_t(n)].push_back(cell);
+        if ((suspicious(nodes, hand) || broken(nodes, hand)) && shape(nodes, hand).lost) found[n].push_back(cell);
       }
     });
     std::vector<Index> lost;
@@ -220,8 +218,7 @@ class ShapeSmoothing {
   [[nodiscard]] std::vector<CellShape> shapes(ShapeRegion const& region) const {
     std::vector<CellShape> out(region.cells.size());
     detail::for_all(host_, "gridmorph::shape_smoothing::shapes", Index(out.size()), [&](Index n) {
-      out[std::size_t(n)] = shape(region.cells[std::size_t(n)], handedness(region.numbers[std::size_t(n)]),
-                                  region.changing[std::size_t(n)]);
+      out[n] = shape(region.cells[n], handedness(region.numbers[n]), region.changing[n]);
     });
     return out;
   }
@@ -257,7 +254,7 @@ class ShapeSmoothing {
     std::vector<ShapeCount> out(pieces.count);
     std::vector<CellShape> const all = shapes(region);
     for (std::size_t n = 0; n < all.size(); ++n) {
-      ShapeCount& piece = out[std::size_t(pieces.of_cell[n])];
+      ShapeCount& piece = out[pieces.of_cell[n]];
       piece.lost += all[n].lost ? 1 : 0;
       piece.inverted += all[n].inverted ? 1 : 0;
       piece.smallest = std::min(piece.smallest, all[n].smallest);
@@ -271,9 +268,9 @@ class ShapeSmoothing {
     std::vector<std::uint8_t> better;
     for (std::size_t p = 0; p < pieces.count; ++p) better.push_back(has[p].better_than(had[p]) ? 1 : 0);
     for (Index point = 0; point < region.n_points(); ++point) {
-      if (better[std::size_t(pieces.of_point[std::size_t(point)])] != 0) continue;
-      for (Index n = region.first_node[std::size_t(point)]; n < region.first_node[std::size_t(point) + 1]; ++n)
-        x_.set(region.nodes[std::size_t(n)].node, places[std::size_t(n)]);
+      if (better[pieces.of_point[point]] != 0) continue;
+      for (Index n = region.first_node[point]; n < region.first_node[point + 1]; ++n)
+        x_.set(region.nodes[n].node, places[n]);
     }
     return std::find(better.begin(), better.end(), 1) != better.end();
   }

@@ -53,7 +53,7 @@ std::vector<Mode> modes_of(std::vector<std::vector<Vec3> const*> const& u, std::
 /// Takes nodes on slip surfaces, point by point, out of those that move in space.
 void add_slides(BlockPoints const& points, SmoothingMap& map) {
   std::map<int, std::int32_t> number;  // of a surface, in the map
-  std::vector<std::uint8_t> done(std::size_t(map.n_nodes), 0);
+  std::vector<std::uint8_t> done(map.n_nodes, 0);
   std::vector<Index> free;
   std::vector<Vec3> shifts;
   auto const modes = std::size_t(map.n_modes);
@@ -62,7 +62,7 @@ void add_slides(BlockPoints const& points, SmoothingMap& map) {
               map.shift.begin() + std::ptrdiff_t((at + 1) * modes));
   };
   for (std::size_t at = 0; at < map.node.size(); ++at) {
-    if (done[std::size_t(map.node[at])] != 0) continue;
+    if (done[map.node[at]] != 0) continue;
     std::vector<PointNode> nodes;
     points.for_each_node(map.node[at], [&](PointNode const& n) { nodes.push_back(n); });
     auto const slide = points.sliding(nodes);
@@ -78,14 +78,14 @@ void add_slides(BlockPoints const& points, SmoothingMap& map) {
         points.slot(slide->node.node),      slide->node.node, slide->node.matrix, {-1, -1, -1}, {0, 0, 0},
         points.baseline()[slide->node.node]};
     for (int m = 0; m < slide->count; ++m) {
-      int const surface = slide->surface[std::size_t(m)];
+      int const surface = slide->surface[m];
       auto const [known, fresh] = number.try_emplace(surface, std::int32_t(map.surfaces.size()));
-      if (fresh) map.surfaces.push_back(points.slip_surfaces()[std::size_t(surface)]);
+      if (fresh) map.surfaces.push_back(points.slip_surfaces()[surface]);
       entry.surface[m] = known->second;
-      entry.own_offset[m] = slide->own_offset[std::size_t(m)];
+      entry.own_offset[m] = slide->own_offset[m];
     }
     for (PointNode const& n : nodes) {
-      done[std::size_t(n.node)] = 1;
+      done[n.node] = 1;
       map.slide_nodes.push_back({n.node, std::int32_t(map.slides.size()), n.matrix});
     }
     append(map.slide_shift, std::size_t(of_frame - map.node.begin()));
@@ -125,9 +125,7 @@ std::shared_ptr<SmoothingMap const> SmoothingRecord::map(FreezeOptions const& op
   }
   std::sort(out.node.begin(), out.node.end());
   out.node.erase(std::unique(out.node.begin(), out.node.end()), out.node.end());
-  auto const part_of = [&](Index node) {
-    return options.part_of_node.empty() ? 0 : options.part_of_node[std::size_t(node)];
-  };
+  auto const part_of = [&](Index node) { return options.part_of_node.empty() ? 0 : options.part_of_node[node]; };
   std::map<int, std::vector<std::size_t>> places;  // of boundary nodes, by part
   for (std::size_t b = 0; b < boundary_nodes.size(); ++b) places[part_of(boundary_nodes[b])].push_back(b);
   std::set<int> moved;

@@ -218,7 +218,7 @@ class ModelReader {
       auto const* node = parent.child(names[c] + part);
       if (node == nullptr) continue;
       auto const values = array(*node, n);
-      out.resize(std::size_t(n));
+      out.resize(n);
       for (Index i = 0; i < n; ++i) {
         (c == 0 ? out[i].x : c == 1 ? out[i].y : out[i].z) = values[i];
         if (!std::isfinite(values[i])) {

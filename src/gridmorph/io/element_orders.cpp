@@ -91,15 +91,15 @@ bool orient_prisms(Mesh& mesh) {
   auto& item = mesh.elements.nodes.item;
   Index balance = 0;
   for (Index e = 0; e < elements.size(); ++e) {
-    if (elements.type[std::size_t(e)] != ElementType::prism) continue;
+    if (elements.type[e] != ElementType::prism) continue;
     auto const n = elements.nodes[e];
-    auto const x = [&](int c) { return mesh.coordinates[n[std::size_t(c)]]; };
+    auto const x = [&](int c) { return mesh.coordinates[n[c]]; };
     balance += dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0)) > 0 ? 1 : -1;
   }
   if (balance >= 0) return false;
   for (Index e = 0; e < elements.size(); ++e)
-    if (elements.type[std::size_t(e)] == ElementType::prism)
-      turn_prism({item.data() + elements.nodes.first[std::size_t(e)], elements.nodes[e].size()});
+    if (elements.type[e] == ElementType::prism)
+      turn_prism({item.data() + elements.nodes.first[e], elements.nodes[e].size()});
   return true;
 }
 

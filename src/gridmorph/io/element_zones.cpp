@@ -81,7 +81,7 @@ double ElementZoneWriter::base(std::string const& name) {
 }
 
 void ElementZoneWriter::zone(int z, std::array<double const*, 3> const& values) {
-  auto const& zone = mesh_.zones[std::size_t(z)];
+  auto const& zone = mesh_.zones[z];
   auto const [base_name, zone_name] = split(zone.name);
   std::array<std::int32_t, 3> const sizes{std::int32_t(zone.size()), std::int32_t(zone.n_elements), 0};
   double const id = file_.create(base(base_name), zone_name, "Zone_t", "I4", {1, 3}, sizes.data());
@@ -146,7 +146,7 @@ Index ElementZoneWriter::elements(Zone const& zone, double zone_id, std::set<std
   std::vector<Index> start{0};
   for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
     auto const list = mesh_.elements.nodes[e];
-    types.push_back(cgns_type(mesh_.elements.type[std::size_t(e)], list.size()));
+    types.push_back(cgns_type(mesh_.elements.type[e], list.size()));
     if (types.back() == 0)
       throw IoError(mesh_.source + ": " + describe_element(mesh_, e) + " of " + std::to_string(list.size()) +
                     " nodes cannot be written");
@@ -200,7 +200,7 @@ void ElementZoneWriter::family_names(double parent, std::vector<std::string> con
 
 void ElementZoneWriter::boundary(int z, ZoneFaces const* faces, double zone_id, Index next,
                                  std::set<std::string>& sections) {
-  auto const& zone = mesh_.zones[std::size_t(z)];
+  auto const& zone = mesh_.zones[z];
   double zone_bc = 0;
   std::set<std::string> taken;
   for (auto const& patch : mesh_.patches) {
@@ -245,13 +245,13 @@ void ElementZoneWriter::connections(int z, double zone_id) {
   for (auto const& c : mesh_.connections) {
     if (c.zone != z) continue;
     if (taken.empty()) connectivity = file_.create(zone_id, "ZoneGridConnectivity", "ZoneGridConnectivity_t");
-    auto const& donor = mesh_.zones[std::size_t(c.donor_zone)];
-    auto const [own_base, own_name] = split(mesh_.zones[std::size_t(z)].name);
+    auto const& donor = mesh_.zones[c.donor_zone];
+    auto const [own_base, own_name] = split(mesh_.zones[z].name);
     auto const [donor_base, donor_name] = split(donor.name);
     double const id = file_.create_text(connectivity, cgns::unique_name(taken, c.name), "GridConnectivity_t",
                                         own_base == donor_base ? donor_name : donor_base + "/" + donor_name);
     file_.create_text(id, "GridConnectivityType", "GridConnectivityType_t", "Abutting1to1");
-    points(id, "PointList", c.nodes, mesh_.zones[std::size_t(z)]);
+    points(id, "PointList", c.nodes, mesh_.zones[z]);
     points(id, "PointListDonor", c.donor_nodes, donor);
     family_names(id, c.families);
     if (c.periodic) periodic(id, *c.periodic);
@@ -279,8 +279,7 @@ std::uint64_t bytes_of_elements(Mesh const& mesh) {
     numbers += 2 * std::uint64_t(zone.n_elements);
     if (has_polyhedra(mesh, zone)) numbers += numbers_by_faces(mesh, zone);
     if (zone.n_elements > 0)
-      numbers += std::uint64_t(first[std::size_t(zone.first_element + zone.n_elements)] -
-                               first[std::size_t(zone.first_element)]);
+      numbers += std::uint64_t(first[zone.first_element + zone.n_elements] - first[zone.first_element]);
   }
   for (auto const& patch : mesh.patches) {
     nodes += 10 + 3 * patch.families.size();

@@ -104,7 +104,7 @@ Foreign foreign_hdf5(std::string_view head) {
 bool is_binary_stl(std::string_view head, std::uintmax_t size) {
   if (size < 84 || head.size() < 84) return false;
   std::uint32_t n = 0;
-  for (int b = 3; b >= 0; --b) n = 256 * n + static_cast<unsigned char>(head[std::size_t(80 + b)]);
+  for (int b = 3; b >= 0; --b) n = 256 * n + static_cast<unsigned char>(head[80 + b]);
   return n > 0 && size == 84 + 50 * std::uintmax_t(n);
 }
 

@@ -144,7 +144,7 @@ std::vector<double> SolutionWriter::with_rind(Place const& place, double const* 
     low[a] = Index(place.rind[2 * a]);
     all[a] = dimensions[a] = core[a] + low[a] + Index(place.rind[2 * a + 1]);
   }
-  std::vector<double> out(std::size_t(all[0] * all[1] * all[2]));
+  std::vector<double> out(all[0] * all[1] * all[2]);
   std::array<Index, 3> at{};
   std::size_t n = 0;
   auto const inside = [&](std::size_t a) { return std::clamp<Index>(at[a] - low[a], 0, core[a] - 1); };
@@ -193,7 +193,7 @@ void SolutionWriter::add(std::string const& name, double const* values, FieldUni
 }
 
 void SolutionWriter::add_displacement(std::string const& name, double const* values, int component) const {
-  Node const& coordinate = present_.coordinate[std::size_t(component)];
+  Node const& coordinate = present_.coordinate[component];
   std::array<Node const*, 4> const levels{&coordinate, zone_.grid, zone_.node, zone_.base};
   Node const* data_class = inherited(levels, "DataClass_t");
   std::string const text = data_class == nullptr ? "" : file_.text(*data_class);

@@ -24,7 +24,7 @@ void read_coordinates(cgns::File const& file, cgns::Layout const& layout, Mesh& 
         read_component(file, from, c, dest);
         continue;
       }
-      plane.resize(std::size_t(from.nodes_in_file()));
+      plane.resize(from.nodes_in_file());
       read_component(file, from, c, plane.data());
       auto const p = cgns::plane_steps(zone, from.flat_axis);
       auto value = plane.begin();

@@ -27,7 +27,7 @@ Coordinates read_coordinates(cgns::File const& file, cgns::Layout const& layout,
   std::array<double*, 3> const arrays{out.x.data(), out.y.data(), out.z.data()};
   Index first = 0;
   for (auto const& zone : layout.zones) {
-    for (int c = 0; c < 3; ++c) read_component(file, zone, c, arrays[std::size_t(c)] + first);
+    for (int c = 0; c < 3; ++c) read_component(file, zone, c, arrays[c] + first);
     first += zone.nodes_in_file();
   }
   return out;

@@ -42,7 +42,7 @@ std::string read_head(std::string const& path) {
   std::string out(head_size, '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(out.data(), std::streamsize(out.size()));
-  out.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
+  out.resize(std::max<std::streamsize>(in.gcount(), 0));
   return out;
 }
 

@@ -34,7 +34,7 @@ struct StoredZone {
   /// The values of the zone out of all that are stored: without rind planes.
   [[nodiscard]] std::vector<double> inner(std::vector<double> const& all) const {
     std::vector<double> out;
-    out.reserve(std::size_t(core[0] * core[1] * core[2]));
+    out.reserve(core[0] * core[1] * core[2]);
     Index const ni = low[0] + core[0] + high[0], nj = low[1] + core[1] + high[1];
     for (Index k = 0; k < core[2]; ++k)
       for (Index j = 0; j < core[1]; ++j) {
@@ -71,7 +71,7 @@ class SolutionReader {
   }
 
   void read_zone(int z) {
-    Zone const& zone = mesh_.zones[std::size_t(z)];
+    Zone const& zone = mesh_.zones[z];
     auto const at = std::find_if(layout_.zones.begin(), layout_.zones.end(),
                                  [&](cgns::ZoneLayout const& one) { return one.name == zone.name; });
     if (at == layout_.zones.end()) {
@@ -85,7 +85,7 @@ class SolutionReader {
     if (mesh_.file_order.left_out > 0 ? at->nodes_in_file() <= last_place(zone) : at->nodes_in_file() != n_nodes)
       return problem(zone, " has " + std::to_string(at->nodes_in_file()) + " nodes, but the mesh has " +
                                std::to_string(n_nodes) + " there; give a solution on this mesh");
-    Node const* solution = choose(zone, solutions_[std::size_t(at - layout_.zones.begin())]);
+    Node const* solution = choose(zone, solutions_[at - layout_.zones.begin()]);
     if (solution != nullptr) read_arrays(zone, *at, *solution);
   }
 
@@ -106,7 +106,7 @@ class SolutionReader {
     }
     if (chosen_.empty()) chosen_ = best(present);
     auto const found = std::find(names.begin(), names.end(), chosen_);
-    if (found != names.end()) return &present.solutions[std::size_t(found - names.begin())];
+    if (found != names.end()) return &present.solutions[found - names.begin()];
     problem(zone, " has no solution '" + chosen_ + "'; those there are " + quote_list(names));
     return nullptr;
   }
@@ -160,8 +160,7 @@ class SolutionReader {
                                                       Node const& solution, bool at_nodes) const {
     StoredZone out;
     if (layout.is_block()) {
-      for (int a = 0; a < 3; ++a)
-        out.core[std::size_t(a)] = std::max(Index(1), Index(layout.extent[a]) - (at_nodes ? 0 : 1));
+      for (int a = 0; a < 3; ++a) out.core[a] = std::max(Index(1), Index(layout.extent[a]) - (at_nodes ? 0 : 1));
     } else {
       out.core[0] = at_nodes ? zone.size() : zone.n_elements;
     }
@@ -177,8 +176,8 @@ class SolutionReader {
     for (int a = 0; a < 3 && n < planes.size(); ++a) {
       if (layout.is_block() && layout.index_dimension == 2 && a == layout.flat_axis) continue;
       if (!fits(planes[n]) || !fits(planes[n + 1])) return std::nullopt;
-      out.low[std::size_t(a)] = planes[n];
-      out.high[std::size_t(a)] = planes[n + 1];
+      out.low[a] = planes[n];
+      out.high[a] = planes[n + 1];
       n += 2;
     }
     return out;
@@ -193,7 +192,7 @@ class SolutionReader {
     ++zones_with_[name];
     auto& all = out_.values[name];
     Index const n_all = out_.at_nodes ? mesh_.n_nodes() : mesh_.is_structured() ? mesh_.n_cells() : mesh_.n_elements();
-    all.resize(std::size_t(n_all));
+    all.resize(n_all);
     if (out_.at_nodes)
       put_nodes(zone, layout, values, all);
     else
@@ -215,8 +214,8 @@ class SolutionReader {
       return;
     }
     for (Index n = 0; n < zone.size(); ++n) {
-      Index const from = place.empty() ? n : place[std::size_t(zone.first_node + n)] - zone.first_node;
-      dest[n] = values[std::size_t(from)];
+      Index const from = place.empty() ? n : place[zone.first_node + n] - zone.first_node;
+      dest[n] = values[from];
     }
   }
 
@@ -231,17 +230,15 @@ class SolutionReader {
       std::copy(values.begin(), values.end(), all.begin() + first);
       return;
     }
-    std::vector<Index> order(std::size_t(zone.n_elements));
+    std::vector<Index> order(zone.n_elements);
     std::iota(order.begin(), order.end(), zone.first_element);
     auto const& number = mesh_.elements.number;
     auto const& place = mesh_.file_order.element;
     if (!number.empty())
-      std::stable_sort(order.begin(), order.end(),
-                       [&](Index a, Index b) { return number[std::size_t(a)] < number[std::size_t(b)]; });
+      std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return number[a] < number[b]; });
     else if (!place.empty())
-      std::sort(order.begin(), order.end(),
-                [&](Index a, Index b) { return place[std::size_t(a)] < place[std::size_t(b)]; });
-    for (std::size_t n = 0; n < order.size(); ++n) all[std::size_t(order[n])] = values[n];
+      std::sort(order.begin(), order.end(), [&](Index a, Index b) { return place[a] < place[b]; });
+    for (std::size_t n = 0; n < order.size(); ++n) all[order[n]] = values[n];
   }
 
   cgns::File file_;

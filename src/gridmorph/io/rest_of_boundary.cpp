@@ -13,8 +13,7 @@ Index add_rest_of_boundary(Mesh& mesh) {
   std::vector<Patch> rest(mesh.zones.size());
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     auto const nodes = topology.boundary.nodes[f];
-    if (of_face.patch[std::size_t(f)] == BoundaryFacePatches::open)
-      rest[std::size_t(mesh.zone_of(nodes[0]))].faces.add(nodes);
+    if (of_face.patch[f] == BoundaryFacePatches::open) rest[mesh.zone_of(nodes[0])].faces.add(nodes);
   }
   for (std::size_t z = 0; z < rest.size(); ++z) {
     if (rest[z].faces.size() == 0) continue;

@@ -14,7 +14,7 @@ std::vector<Index32> used_nodes(CsrGraph const& nodes, std::size_t n_nodes, IsOf
   std::vector<Index32> number(n_nodes, -1);
   for (Index e = 0; e < nodes.size(); ++e)
     if (is_of_mesh(e))
-      for (Index32 const n : nodes[e]) number[std::size_t(n)] = 0;
+      for (Index32 const n : nodes[e]) number[n] = 0;
   n_used = 0;
   for (Index32& n : number)
     if (n == 0) n = Index32(n_used++);

@@ -30,7 +30,7 @@ void write_node_fields(cgns::File& file, cgns::ZoneLayout const& layout, io::Zon
   std::vector<double> plane;
   if (fields.displacement) {
     auto const before = io::components(mesh.coordinates), after = io::components(morphed);
-    std::vector<double> difference(std::size_t(zone.size()));
+    std::vector<double> difference(zone.size());
     for (int c = 0; c < 3; ++c) {
       if (!layout.array[c]) continue;
       for (Index n = 0; n < zone.size(); ++n)

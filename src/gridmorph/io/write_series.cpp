@@ -97,10 +97,9 @@ struct SeriesWriter::Impl {
     if (written == steps)
       throw MeshError(name + ": more steps than the " + std::to_string(steps) + " times of the series");
     if (zones_of_step.empty()) zones_of_step.assign(mesh.zones.size(), 0);
-    auto const& own = mesh.zones.at(std::size_t(zone));
+    auto const& own = mesh.zones.at(zone);
     std::string const what = "zone '" + own.name + "' of step " + std::to_string(written + 1);
-    if (std::exchange(zones_of_step[std::size_t(zone)], 1) != 0)
-      throw MeshError(name + ": " + what + " is written twice");
+    if (std::exchange(zones_of_step[zone], 1) != 0) throw MeshError(name + ": " + what + " is written twice");
     for (auto const* component : values)
       if (!std::all_of(component, component + own.size(), [](double v) { return std::isfinite(v); }))
         throw MeshError(name + ": " + what + " has coordinates that are not finite");
@@ -203,9 +202,9 @@ struct CgnsSeries final : SeriesWriter::Impl {
       if (place.array[c] == nullptr) continue;
       auto const put = [&](double const* of_file) { write(grid, place, c, sizes, of_file); };
       if (mesh.is_structured())
-        cgns::with_file_nodes(place, mesh.zones[z], values[std::size_t(c)], plane, put);
+        cgns::with_file_nodes(place, mesh.zones[z], values[c], plane, put);
       else
-        put(values[std::size_t(c)]);
+        put(values[c]);
     }
   }
 

@@ -39,8 +39,7 @@ void write_cgns(std::string const& input, std::string const& output, Mesh const&
     auto const layout = cgns::zones_of(file, tree, mesh);
     auto const present = fields.empty() ? std::vector<io::ZoneSolutions>() : io::zone_solutions(file, layout);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
-      for (int c = 0; c < 3; ++c)
-        write_component(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
+      for (int c = 0; c < 3; ++c) write_component(file, layout.zones[z], c, arrays[c] + mesh.zones[z].first_node);
     write_fields(file, layout, present, mesh, morphed, fields);
     file.close();
   }
@@ -49,8 +48,7 @@ void write_cgns(std::string const& input, std::string const& output, Mesh const&
     auto const tree = file.tree_of_copy(original);
     auto const layout = cgns::zones_of(file, tree, mesh);
     for (std::size_t z = 0; z < mesh.zones.size(); ++z)
-      for (int c = 0; c < 3; ++c)
-        check_written(file, layout.zones[z], c, arrays[std::size_t(c)] + mesh.zones[z].first_node);
+      for (int c = 0; c < 3; ++c) check_written(file, layout.zones[z], c, arrays[c] + mesh.zones[z].first_node);
   }
   target.commit();
 }

@@ -38,7 +38,7 @@ struct Seen {
 ZoneFaces::ZoneFaces(Mesh const& mesh, Zone const& zone) {
   CsrGraph sides;
   std::vector<Seen> seen;
-  std::vector<int> n_sides_of(std::size_t(zone.n_elements), 0);
+  std::vector<int> n_sides_of(zone.n_elements, 0);
   std::array<Index32, max_face_corners> room{};
   for (Index e = 0; e < zone.n_elements; ++e)
     for (int s = 0; s < n_sides(mesh, zone.first_element + e); ++s) {
@@ -46,7 +46,7 @@ ZoneFaces::ZoneFaces(Mesh const& mesh, Zone const& zone) {
       if (nodes.size() < 3) continue;  // collapsed
       seen.push_back({key_of(nodes), Index32(e), Index32(sides.size())});
       sides.add(nodes);
-      ++n_sides_of[std::size_t(e)];
+      ++n_sides_of[e];
     }
   std::sort(seen.begin(), seen.end(),
             [](Seen const& a, Seen const& b) { return a.key != b.key ? a.key < b.key : a.side < b.side; });
@@ -64,7 +64,7 @@ ZoneFaces::ZoneFaces(Mesh const& mesh, Zone const& zone) {
       if (n - from > 1)
         throw MeshError(mesh.source + ": " + describe_element(mesh, zone.first_element + group[n].second.element) +
                         " shares a face with two others");
-      first[std::size_t(group[n].second.side)] = group[from].second.side;
+      first[group[n].second.side] = group[from].second.side;
     }
   }
 
@@ -72,7 +72,7 @@ ZoneFaces::ZoneFaces(Mesh const& mesh, Zone const& zone) {
   Index32 side = 0;
   for (Index e = 0; e < zone.n_elements; ++e) {
     std::vector<Index32> row;
-    for (int s = 0; s < n_sides_of[std::size_t(e)]; ++s, ++side) {
+    for (int s = 0; s < n_sides_of[e]; ++s, ++side) {
       auto const own = std::size_t(side), other = std::size_t(first[own]);
       if (other == own) {
         by_key_.emplace_back(key_of(sides[side]), Index32(faces_.size()));

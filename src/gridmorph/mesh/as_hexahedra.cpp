@@ -16,12 +16,12 @@ Mesh as_hexahedra(Mesh const& mesh) {
   out.families = mesh.families;
   out.coordinates = Coordinates(mesh.n_nodes());
   for (Index n = 0; n < mesh.n_nodes(); ++n) out.coordinates.set(n, mesh.coordinates[n]);
-  out.elements.type.reserve(std::size_t(mesh.n_cells()));
-  out.elements.nodes.first.reserve(std::size_t(mesh.n_cells()) + 1);
+  out.elements.type.reserve(mesh.n_cells());
+  out.elements.nodes.first.reserve(mesh.n_cells() + 1);
   out.elements.nodes.item.reserve(8 * std::size_t(mesh.n_cells()));
   for (auto const& zone : mesh.zones) {
     int const added = out.add_zone(zone.name, zone.size());
-    out.zones[std::size_t(added)].single_precision = zone.single_precision;
+    out.zones[added].single_precision = zone.single_precision;
     add_cells(out, zone, mesh.coordinates);
   }
   for (auto const& patch : mesh.patches) out.patches.push_back(as_faces(mesh, patch));

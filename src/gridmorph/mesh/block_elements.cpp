@@ -16,7 +16,7 @@ struct Directions {
 
   explicit Directions(Zone const& block) {
     for (int a = 0; a < 3; ++a)
-      if (block.extent[a] > 1) axis[std::size_t(n++)] = a;
+      if (block.extent[a] > 1) axis[n++] = a;
   }
 };
 
@@ -47,7 +47,7 @@ void add_cells(Mesh& mesh, Zone const& block, Coordinates const& coordinates, Di
   constexpr ElementType type = N == 8 ? ElementType::hexahedron : ElementType::quadrilateral;
   auto const strides = block.strides();
   std::array<Index, 3> step{};
-  for (int d = 0; d < along.n; ++d) step[std::size_t(d)] = strides[std::size_t(along.axis[std::size_t(d)])];
+  for (int d = 0; d < along.n; ++d) step[d] = strides[along.axis[d]];
   Vec3 const up = N == 8 ? Vec3{0, 0, 1} : plane_normal(mesh);
   Index balance = 0;
   for_each_cell(block, [&](Index n) {
@@ -87,7 +87,7 @@ void add_faces(Zone const& block, IndexRange const& range, CsrGraph& faces) {
   Directions const along(block);
   int axis = 0;
   for (int d = 0; d < along.n; ++d)
-    if (int const a = along.axis[std::size_t(d)]; range.extent(a) == 1) axis = a;
+    if (int const a = along.axis[d]; range.extent(a) == 1) axis = a;
   Index3 at = range.begin;
   if (along.n == 2) {
     int const u = along.axis[0] == axis ? along.axis[1] : along.axis[0];
@@ -111,7 +111,7 @@ void add_faces(Zone const& block, IndexRange const& range, CsrGraph& faces) {
 }
 
 Patch as_faces(Mesh const& mesh, Patch patch) {
-  add_faces(mesh.zones[std::size_t(patch.zone)], patch.range, patch.faces);
+  add_faces(mesh.zones[patch.zone], patch.range, patch.faces);
   patch.range = {};
   return patch;
 }
@@ -123,8 +123,8 @@ Connection node_pairs(Mesh const& mesh, Interface1to1 const& face) {
   c.zone = face.zone;
   c.donor_zone = face.donor_zone;
   c.periodic = face.periodic;
-  Zone const& zone = mesh.zones[std::size_t(face.zone)];
-  Zone const& donor = mesh.zones[std::size_t(face.donor_zone)];
+  Zone const& zone = mesh.zones[face.zone];
+  Zone const& donor = mesh.zones[face.donor_zone];
   for (int k = face.range.begin[2]; k < face.range.end[2]; ++k)
     for (int j = face.range.begin[1]; j < face.range.end[1]; ++j)
       for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {

@@ -151,7 +151,7 @@ CoordinatePrecision precision_of(Mesh const& mesh, Zone const& zone, CoordinateS
 }  // namespace
 
 double coordinate_resolution(Mesh const& mesh, int zone) {
-  Zone const& own = mesh.zones[std::size_t(zone)];
+  Zone const& own = mesh.zones[zone];
   return precision_of(mesh, own, sample_of(mesh, own)).resolution();
 }
 

@@ -27,7 +27,7 @@ struct Elements {
   /// Corner nodes of element e.
   [[nodiscard]] std::span<Index32 const> corners(Index e) const {
     auto const all = nodes[e];
-    ElementType const t = type[std::size_t(e)];
+    ElementType const t = type[e];
     return t == ElementType::polyhedron ? all : all.first(std::size_t(n_corners(t)));
   }
 };

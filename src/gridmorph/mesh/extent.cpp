@@ -42,7 +42,7 @@ MeshExtent extent_of(Coordinates const& c, Index begin, Index end) {
     rx.take(l, x[n]);
     ry.take(l, y[n]);
     rz.take(l, z[n]);
-    zero[std::size_t(l)] += 0 * (x[n] + y[n] + z[n]);
+    zero[l] += 0 * (x[n] + y[n] + z[n]);
   };
   Index n = begin;
   for (; n + lanes <= end; n += lanes)
@@ -98,10 +98,10 @@ MeshCore core_of(Coordinates const& coordinates) {
 
 MeshExtent extent_of(HostInstance const& host, Coordinates const& coordinates) {
   constexpr Index chunk = 16384;  // 384 KiB: stays in a core's cache
-  std::vector<MeshExtent> parts(std::size_t((coordinates.size() + chunk - 1) / chunk));
+  std::vector<MeshExtent> parts((coordinates.size() + chunk - 1) / chunk);
   detail::for_all(host, "gridmorph::extent_of", Index(parts.size()), [&](Index p) {
     Index const begin = p * chunk;
-    parts[std::size_t(p)] = extent_of(coordinates, begin, std::min(coordinates.size(), begin + chunk));
+    parts[p] = extent_of(coordinates, begin, std::min(coordinates.size(), begin + chunk));
   });
   MeshExtent all{{inf, inf, inf}, {-inf, -inf, -inf}, true};
   for (MeshExtent const& part : parts) {

@@ -11,7 +11,7 @@ namespace {
 class FacePatchFinder {
  public:
   FacePatchFinder(Mesh const& mesh, UnstructuredTopology const& topology) : mesh_(mesh), topology_(topology) {
-    out_.patch.assign(std::size_t(topology.boundary.size()), BoundaryFacePatches::open);
+    out_.patch.assign(topology.boundary.size(), BoundaryFacePatches::open);
     out_.faces_of_patch.assign(mesh.patches.size(), 0);
   }
 
@@ -27,7 +27,7 @@ class FacePatchFinder {
 
  private:
   void listed_faces(int p) {
-    auto const& patch = mesh_.patches[std::size_t(p)];
+    auto const& patch = mesh_.patches[p];
     Index inside = 0, twice = 0;
     int other = -1;
     for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -37,7 +37,7 @@ class FacePatchFinder {
         continue;
       }
       if (is_inner(face)) face = side_listed(face, patch.faces[f]);
-      int& patch_of_face = out_.patch[std::size_t(face)];
+      int& patch_of_face = out_.patch[face];
       if (patch_of_face >= 0 && patch_of_face != p && twice++ == 0) other = patch_of_face;
       if (patch_of_face < 0) patch_of_face = p;
     }
@@ -46,23 +46,22 @@ class FacePatchFinder {
                            std::to_string(patch.faces.size()) + " faces are not on the boundary of the elements");
     if (twice > 0)
       out_.problems.push_back("patch " + describe_patch(mesh_, patch) + ": " + std::to_string(twice) +
-                              " of its faces belong to patch " +
-                              describe_patch(mesh_, mesh_.patches[std::size_t(other)]) + " too");
+                              " of its faces belong to patch " + describe_patch(mesh_, mesh_.patches[other]) + " too");
   }
 
   [[nodiscard]] bool is_inner(Index32 face) const {
     auto const& behind = topology_.boundary.behind;
-    return !behind.empty() && behind[std::size_t(face)] >= 0;
+    return !behind.empty() && behind[face] >= 0;
   }
 
   /// The side of a face inside the mesh whose nodes run as they are listed, unless a patch has it and none the other.
   [[nodiscard]] Index32 side_listed(Index32 face, std::span<Index32 const> listed) const {
-    Index32 const other = topology_.boundary.behind[std::size_t(face)];
+    Index32 const other = topology_.boundary.behind[face];
     auto const nodes = topology_.boundary.nodes[face];
     auto const at = std::find(nodes.begin(), nodes.end(), listed[0]) - nodes.begin();
     bool const same_way = nodes[std::size_t(at + 1) % nodes.size()] == listed[1];
     Index32 const first = same_way ? face : other, second = same_way ? other : face;
-    auto const taken = [&](Index32 f) { return out_.patch[std::size_t(f)] >= 0; };
+    auto const taken = [&](Index32 f) { return out_.patch[f] >= 0; };
     return taken(first) && !taken(second) ? second : first;
   }
 
@@ -70,7 +69,7 @@ class FacePatchFinder {
   void other_sides() {
     for (std::size_t f = 0; f < topology_.boundary.behind.size(); ++f) {
       Index32 const other = topology_.boundary.behind[f];
-      if (other >= 0 && out_.patch[f] == BoundaryFacePatches::open) out_.patch[f] = out_.patch[std::size_t(other)];
+      if (other >= 0 && out_.patch[f] == BoundaryFacePatches::open) out_.patch[f] = out_.patch[other];
     }
   }
 
@@ -78,29 +77,28 @@ class FacePatchFinder {
     std::vector<int> order;
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
       if (mesh_.patches[p].faces.size() == 0) order.push_back(int(p));
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return mesh_.patches[std::size_t(a)].nodes.size() < mesh_.patches[std::size_t(b)].nodes.size();
-    });
-    std::vector<char> listed(std::size_t(mesh_.n_nodes()), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return mesh_.patches[a].nodes.size() < mesh_.patches[b].nodes.size(); });
+    std::vector<char> listed(mesh_.n_nodes(), 0);
     for (int const p : order) {
-      auto const& nodes = mesh_.patches[std::size_t(p)].nodes;
-      for (Index32 const n : nodes) listed[std::size_t(n)] = 1;
+      auto const& nodes = mesh_.patches[p].nodes;
+      for (Index32 const n : nodes) listed[n] = 1;
       each_face_of(nodes, listed, [&](int& patch_of_face) {
         if (patch_of_face == BoundaryFacePatches::open) patch_of_face = p;
       });
-      for (Index32 const n : nodes) listed[std::size_t(n)] = 0;
+      for (Index32 const n : nodes) listed[n] = 0;
     }
   }
 
   void connections() {
-    std::vector<char> listed(std::size_t(mesh_.n_nodes()), 0);
+    std::vector<char> listed(mesh_.n_nodes(), 0);
     for (auto const& c : mesh_.connections)
       for (auto const* nodes : {&c.nodes, &c.donor_nodes}) {
-        for (Index32 const n : *nodes) listed[std::size_t(n)] = 1;
+        for (Index32 const n : *nodes) listed[n] = 1;
         each_face_of(*nodes, listed, [&](int& patch_of_face) {
           if (patch_of_face == BoundaryFacePatches::open) patch_of_face = BoundaryFacePatches::connection;
         });
-        for (Index32 const n : *nodes) listed[std::size_t(n)] = 0;
+        for (Index32 const n : *nodes) listed[n] = 0;
       }
   }
 
@@ -109,14 +107,13 @@ class FacePatchFinder {
     for (Index32 const node : nodes)
       for (Index32 const face : topology_.faces_of_nodes[node]) {
         auto const corners = topology_.boundary.nodes[face];
-        if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return listed[std::size_t(n)] != 0; }))
-          f(out_.patch[std::size_t(face)]);
+        if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return listed[n] != 0; })) f(out_.patch[face]);
       }
   }
 
   void count() {
     for (int const p : out_.patch)
-      if (p >= 0) ++out_.faces_of_patch[std::size_t(p)];
+      if (p >= 0) ++out_.faces_of_patch[p];
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
       if (out_.faces_of_patch[p] == 0)
         out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[p]) +
@@ -127,8 +124,8 @@ class FacePatchFinder {
     for (auto const& zone : mesh_.zones) {
       Index open = 0, first = -1;
       for (Index f = 0; f < topology_.boundary.size(); ++f) {
-        Index const element = topology_.boundary.element[std::size_t(f)];
-        if (out_.patch[std::size_t(f)] != BoundaryFacePatches::open || element < zone.first_element ||
+        Index const element = topology_.boundary.element[f];
+        if (out_.patch[f] != BoundaryFacePatches::open || element < zone.first_element ||
             element >= zone.first_element + zone.n_elements)
           continue;
         if (open++ == 0) first = f;
@@ -140,8 +137,7 @@ class FacePatchFinder {
       out_.problems.push_back(mesh_.source + ": zone '" + zone.name + "': " + std::to_string(open) +
                               (open == 1 ? " boundary face belongs" : " boundary faces belong") +
                               " to no patch and no connection, the first is that of " +
-                              describe_element(mesh_, topology_.boundary.element[std::size_t(first)]) + " with nodes " +
-                              nodes);
+                              describe_element(mesh_, topology_.boundary.element[first]) + " with nodes " + nodes);
     }
     if (topology_.crowded_sides > 0)
       out_.problems.push_back(mesh_.source + ": " + std::to_string(topology_.crowded_sides) +

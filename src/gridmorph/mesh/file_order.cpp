@@ -21,8 +21,7 @@ using detail::for_all;
 
 std::vector<Index32> inverse_of(HostInstance const& host, std::vector<Index32> const& order) {
   std::vector<Index32> inverse(order.size());
-  for_all(host, "gridmorph::inverse_of", Index(order.size()),
-          [&](Index n) { inverse[std::size_t(order[std::size_t(n)])] = Index32(n); });
+  for_all(host, "gridmorph::inverse_of", Index(order.size()), [&](Index n) { inverse[order[n]] = Index32(n); });
   return inverse;
 }
 
@@ -30,15 +29,13 @@ std::vector<Index32> inverse_of(HostInstance const& host, std::vector<Index32> c
 template <class T>
 std::vector<T> gather(HostInstance const& host, std::vector<T> const& values, std::vector<Index32> const& order) {
   std::vector<T> out(values.size());
-  for_all(host, "gridmorph::gather", Index(values.size()),
-          [&](Index n) { out[std::size_t(n)] = values[std::size_t(order[std::size_t(n)])]; });
+  for_all(host, "gridmorph::gather", Index(values.size()), [&](Index n) { out[n] = values[order[n]]; });
   return out;
 }
 
 Coordinates gather(HostInstance const& host, Coordinates const& values, std::vector<Index32> const& order) {
   Coordinates out(values.size());
-  for_all(host, "gridmorph::gather_coordinates", values.size(),
-          [&](Index n) { out.set(n, values[order[std::size_t(n)]]); });
+  for_all(host, "gridmorph::gather_coordinates", values.size(), [&](Index n) { out.set(n, values[order[n]]); });
   return out;
 }
 
@@ -46,22 +43,22 @@ Coordinates gather(HostInstance const& host, Coordinates const& values, std::vec
 CsrGraph gather(HostInstance const& host, CsrGraph const& lists, std::vector<Index32> const& order,
                 std::vector<Index32> const& translation) {
   CsrGraph out;
-  out.first.resize(std::size_t(lists.size()) + 1);
+  out.first.resize(lists.size() + 1);
   for (std::size_t n = 0; n < order.size(); ++n) {
     auto const from = std::size_t(order[n]);
     out.first[n + 1] = out.first[n] + lists.first[from + 1] - lists.first[from];
   }
   out.item.resize(lists.item.size());
   for_all(host, "gridmorph::gather_lists", lists.size(), [&](Index n) {
-    auto const list = lists[order[std::size_t(n)]];
-    std::transform(list.begin(), list.end(), out.item.begin() + out.first[std::size_t(n)],
-                   [&](Index32 item) { return translation[std::size_t(item)]; });
+    auto const list = lists[order[n]];
+    std::transform(list.begin(), list.end(), out.item.begin() + out.first[n],
+                   [&](Index32 item) { return translation[item]; });
   });
   return out;
 }
 
 void translate(std::vector<Index32>& numbers, std::vector<Index32> const& translation) {
-  for (Index32& n : numbers) n = translation[std::size_t(n)];
+  for (Index32& n : numbers) n = translation[n];
 }
 
 /// Nodes in patches, connections and faces of subsets.
@@ -82,8 +79,7 @@ void translate_nodes(Mesh& mesh, std::vector<Index32> const& new_node) {
 Polyhedra gather(Polyhedra const& polyhedra, std::vector<Index32> const& new_element,
                  std::vector<Index32> const& new_node) {
   std::vector<std::pair<Index32, std::size_t>> moved;  // new number, old place
-  for (std::size_t p = 0; p < polyhedra.element.size(); ++p)
-    moved.emplace_back(new_element[std::size_t(polyhedra.element[p])], p);
+  for (std::size_t p = 0; p < polyhedra.element.size(); ++p) moved.emplace_back(new_element[polyhedra.element[p]], p);
   std::sort(moved.begin(), moved.end());
   Polyhedra out;
   if (!polyhedra.first_face.empty()) out.first_face.push_back(0);
@@ -152,16 +148,16 @@ std::vector<Index32> numbers_in(NodesOfFile const& file, Mesh const& mesh) {
   };
   if (file.n_nodes.size() != mesh.zones.size())
     refuse("has " + std::to_string(mesh.zones.size()) + " zones and its file " + std::to_string(file.n_nodes.size()));
-  std::vector<Index32> out(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> out(mesh.n_nodes());
   Index first = 0;
   for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
     Zone const& zone = mesh.zones[z];
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
-      Index const place = mesh.file_order.node[std::size_t(n)] - zone.first_node;
+      Index const place = mesh.file_order.node[n] - zone.first_node;
       if (place >= file.n_nodes[z])
         refuse("zone '" + zone.name + "' has " + std::to_string(file.n_nodes[z]) + " nodes in its file, and node " +
                std::to_string(place + mesh.first_number) + " is wanted");
-      out[std::size_t(n)] = Index32(first + place);
+      out[n] = Index32(first + place);
     }
     first += file.n_nodes[z];
   }
@@ -176,7 +172,7 @@ std::vector<Index32> order_nodes(HostInstance const& host, Mesh const& mesh) {
   Vec3 const size = box.high - box.low;
   double const longest = std::max({size.x, size.y, size.z});
   double const steps = longest > 0 ? double(1 << kernels::LatticePlace::bits) / longest : 0;
-  std::vector<Index32> order(std::size_t(mesh.n_nodes()));
+  std::vector<Index32> order(mesh.n_nodes());
   for (auto const& zone : mesh.zones) {
     if (zone.is_block()) {
       std::iota(order.begin() + zone.first_node, order.begin() + zone.first_node + zone.size(),
@@ -201,12 +197,12 @@ std::vector<Index32> order_nodes(HostInstance const& host, Mesh const& mesh) {
 std::vector<Index32> order_elements(HostInstance const& host, Mesh const& mesh, std::vector<Index32> const& new_node) {
   detail::IndexBuckets<Index32> const buckets(host, "gridmorph::order_elements", mesh.n_elements(), mesh.n_nodes(),
                                               [&](Index e, auto const& put) {
-                                                Index32 first = new_node[std::size_t(mesh.elements.nodes[e].front())];
+                                                Index32 first = new_node[mesh.elements.nodes[e].front()];
                                                 for (Index32 const n : mesh.elements.corners(e))
-                                                  first = std::min(first, new_node[std::size_t(n)]);
+                                                  first = std::min(first, new_node[n]);
                                                 put(first, Index32(e));
                                               });
-  std::vector<Index32> order(std::size_t(mesh.n_elements()));
+  std::vector<Index32> order(mesh.n_elements());
   buckets.for_each_key([&](Index32, Index at, std::span<Index32 const> elements) {
     std::copy(elements.begin(), elements.end(), order.begin() + at);
   });
@@ -215,7 +211,7 @@ std::vector<Index32> order_elements(HostInstance const& host, Mesh const& mesh, 
 
 bool stays(std::vector<Index32> const& order, Index first, Index n) {
   for (Index m = first; m < first + n; ++m)
-    if (order[std::size_t(m)] != m) return false;
+    if (order[m] != m) return false;
   return true;
 }
 
@@ -256,7 +252,7 @@ FileOrder order_by_position(HostInstance const& host, Mesh const& mesh) {
   bool const has_empty = std::adjacent_find(mesh.elements.nodes.first.begin(), mesh.elements.nodes.first.end()) !=
                          mesh.elements.nodes.first.end();
   if (has_empty) {
-    order.element.resize(std::size_t(mesh.n_elements()));
+    order.element.resize(mesh.n_elements());
     std::iota(order.element.begin(), order.element.end(), 0);
   } else {
     order.element = order_elements(host, mesh, inverse_of(host, order.node));
@@ -301,16 +297,15 @@ Coordinates in_file_order(HostInstance const& host, Mesh const& mesh, Coordinate
 std::vector<double> in_file_order(HostInstance const& host, std::span<Index32 const> place,
                                   std::span<double const> values) {
   std::vector<double> out(values.begin(), values.end());
-  for_all(host, "gridmorph::in_file_order", Index(place.size()),
-          [&](Index n) { out[std::size_t(place[std::size_t(n)])] = values[std::size_t(n)]; });
+  for_all(host, "gridmorph::in_file_order", Index(place.size()), [&](Index n) { out[place[n]] = values[n]; });
   return out;
 }
 
 Index leave_out_unused_nodes(Mesh& mesh) {
   if (mesh.is_structured() || !mesh.file_order.node.empty()) return 0;
-  std::vector<Index32> new_node(std::size_t(mesh.n_nodes()), -1);
+  std::vector<Index32> new_node(mesh.n_nodes(), -1);
   auto const take = [&](std::vector<Index32> const& nodes) {
-    for (Index32 const n : nodes) new_node[std::size_t(n)] = 0;
+    for (Index32 const n : nodes) new_node[n] = 0;
   };
   take(mesh.elements.nodes.item);
   for (auto const& patch : mesh.patches) take(patch.faces.item);
@@ -342,7 +337,7 @@ Index leave_out_unused_nodes(Mesh& mesh) {
     n_nodes.push_back(Index(place.size()) - first);
   }
   // Patches that list nodes say where boundaries are, and there is none at these.
-  for (auto& patch : mesh.patches) std::erase_if(patch.nodes, [&](Index32 n) { return new_node[std::size_t(n)] < 0; });
+  for (auto& patch : mesh.patches) std::erase_if(patch.nodes, [&](Index32 n) { return new_node[n] < 0; });
   Coordinates used{Index(old.size())};
   for (std::size_t n = 0; n < old.size(); ++n) used.set(Index(n), mesh.coordinates[old[n]]);
   mesh.coordinates = used;
@@ -359,9 +354,9 @@ std::vector<Index32> node_places(Mesh const& mesh) {
     auto const begin = out.begin() + std::ptrdiff_t(zone.first_node), end = begin + std::ptrdiff_t(zone.size());
     if (begin == end) continue;
     std::vector<Index32> rank(std::size_t(*std::max_element(begin, end) - zone.first_node) + 1, 0);
-    for (auto p = begin; p != end; ++p) rank[std::size_t(*p - zone.first_node)] = 1;
+    for (auto p = begin; p != end; ++p) rank[*p - zone.first_node] = 1;
     std::exclusive_scan(rank.begin(), rank.end(), rank.begin(), Index32(zone.first_node));
-    for (auto p = begin; p != end; ++p) *p = rank[std::size_t(*p - zone.first_node)];
+    for (auto p = begin; p != end; ++p) *p = rank[*p - zone.first_node];
   }
   return out;
 }
@@ -371,7 +366,7 @@ Mesh with_all_nodes(Mesh const& mesh, NodesOfFile const& file) {
   Mesh out = in_file_order(mesh);
   std::vector<Index32> new_node(number.size());
   auto const place = node_places(mesh);
-  for (std::size_t n = 0; n < number.size(); ++n) new_node[std::size_t(place[n])] = number[n];
+  for (std::size_t n = 0; n < number.size(); ++n) new_node[place[n]] = number[n];
   renumber(out, file.n_nodes, new_node);
   out.coordinates = file.coordinates;
   return out;
@@ -387,8 +382,8 @@ Coordinates with_all_nodes(Mesh const& mesh, NodesOfFile const& file, Coordinate
 
 std::vector<double> with_all_nodes(Mesh const& mesh, NodesOfFile const& file, std::span<double const> values) {
   auto const number = numbers_in(file, mesh);
-  std::vector<double> out(std::size_t(file.coordinates.size()), 0.0);
-  for (std::size_t n = 0; n < number.size(); ++n) out[std::size_t(number[n])] = values[n];
+  std::vector<double> out(file.coordinates.size(), 0.0);
+  for (std::size_t n = 0; n < number.size(); ++n) out[number[n]] = values[n];
   return out;
 }
 

@@ -31,8 +31,7 @@ constexpr std::array<CellEdge, 12> make_edges() {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 4; ++b) {
       int const first = a == 0 ? 1 : 0, second = a == 2 ? 1 : 2;
-      out[std::size_t(4 * a + b)] = {side_at[std::size_t(first)][std::size_t(b & 1)],
-                                     side_at[std::size_t(second)][std::size_t(b >> 1)]};
+      out[4 * a + b] = {side_at[first][b & 1], side_at[second][b >> 1]};
     }
   return out;
 }
@@ -48,10 +47,10 @@ struct Around {
 Around next(HexLinks const& links, Around const& at) {
   HexLink const link = links.link(cell_side(at.cell, at.through));
   // The side that was begun at lies at an end of an axis of this cell; there it goes on along the same axis.
-  int const axis = side_axis[std::size_t(at.other)], there = link.turn->axes.axis[std::size_t(axis)];
-  bool const flipped = link.turn->axes.sign[std::size_t(axis)] < 0;
-  int const end = flipped ? 1 - side_end[std::size_t(at.other)] : side_end[std::size_t(at.other)];
-  return {link.cell, side_at[std::size_t(there)][std::size_t(end)], link.side};
+  int const axis = side_axis[at.other], there = link.turn->axes.axis[axis];
+  bool const flipped = link.turn->axes.sign[axis] < 0;
+  int const end = flipped ? 1 - side_end[at.other] : side_end[at.other];
+  return {link.cell, side_at[there][end], link.side};
 }
 
 /// Whether grid lines go on through an edge: four cells around it, or on the boundary one or two.
@@ -81,23 +80,23 @@ class Sheets {
     detail::for_all(host, "gridmorph::regular_edges", n_cells, [&](Index e) {
       if (!links.is_hexahedron(Index32(e))) return;
       for (std::size_t k = 0; k < 12; ++k)
-        if (!is_regular(links, Index32(e), edges[k])) irregular_[std::size_t(e)] |= std::uint16_t(1u << k);
+        if (!is_regular(links, Index32(e), edges[k])) irregular_[e] |= std::uint16_t(1u << k);
     });
     DisjointSets<Index32> sets(std::size_t(6 * n_cells));  // of face()
     for (Index32 e = 0; e < n_cells; ++e)
       if (links.is_hexahedron(e)) join(e, sets);
     sheet_ = sets.roots();
-    limit_.assign(std::size_t(6 * n_cells), 0);
+    limit_.assign(6 * n_cells, 0);
     for (Index32 e = 0; e < n_cells; ++e)
       for (std::size_t k = 0; k < 12; ++k)
-        if ((irregular_[std::size_t(e)] & (1u << k)) != 0)
+        if ((irregular_[e] & (1u << k)) != 0)
           for (int const side : {edges[k].side, edges[k].other})
             if (links.behind(cell_side(e, side)) >= 0) make_limit(cell_side(e, side));
   }
 
   /// Blocks end at the whole sheet of a side.
-  void make_limit(CellSide s) { limit_[std::size_t(sheet_[std::size_t(face(s))])] = 1; }
-  [[nodiscard]] bool is_limit(CellSide s) const { return limit_[std::size_t(sheet_[std::size_t(face(s))])] != 0; }
+  void make_limit(CellSide s) { limit_[sheet_[face(s)]] = 1; }
+  [[nodiscard]] bool is_limit(CellSide s) const { return limit_[sheet_[face(s)]] != 0; }
 
  private:
   /// One number for both sides of a face.
@@ -108,7 +107,7 @@ class Sheets {
   /// At each regular edge inside, a side with the one that goes on behind the other side.
   void join(Index32 e, DisjointSets<Index32>& sets) const {
     for (std::size_t k = 0; k < 12; ++k) {
-      if ((irregular_[std::size_t(e)] & (1u << k)) != 0) continue;
+      if ((irregular_[e] & (1u << k)) != 0) continue;
       for (auto const& [side, through] :
            {std::pair(edges[k].side, edges[k].other), std::pair(edges[k].other, edges[k].side)}) {
         CellSide const own = cell_side(e, side);
@@ -167,7 +166,7 @@ Mesh with_layer(Mesh const& flat) {
   }
   for (Patch const& patch : flat.patches) {
     Patch& own = out.patches.emplace_back(patch);
-    own.zone_in_file = flat.zones[std::size_t(patch.zone)].name;
+    own.zone_in_file = flat.zones[patch.zone].name;
     own.zone = 0;
     own.faces = {};
     for (Index f = 0; f < patch.faces.size(); ++f) {
@@ -206,12 +205,12 @@ class Search {
   FoundBlocks run(BoundaryFacePatches const& face_patches) {
     FoundBlocks out;
     for (Index32 e = 0; e < mesh_.n_elements(); ++e) {
-      if (block_[std::size_t(e)] != none) continue;
+      if (block_[e] != none) continue;
       if (!links_.is_hexahedron(e)) {
         leave(out, {e}, "is no hexahedron");
         continue;
       }
-      while (block_[std::size_t(e)] == none) find_block(out, e);
+      while (block_[e] == none) find_block(out, e);
     }
     if (out.n_left == 0) detail::add_block_sides(mesh_, links_, face_patches, places(), out.mesh);
     finish(out);
@@ -224,12 +223,12 @@ class Search {
   /// The block around a cell; where it closes on itself it is cut, and found in the next call.
   void find_block(FoundBlocks& out, Index32 first) {
     std::vector<Index32> cells{first};
-    placed_[std::size_t(first)] = {};
-    block_[std::size_t(first)] = int(out.mesh.zones.size());
+    placed_[first] = {};
+    block_[first] = int(out.mesh.zones.size());
     std::optional<CellSide> conflict;
     for (std::size_t n = 0; n < cells.size() && !conflict; ++n) conflict = visit_neighbours(cells, cells[n]);
     if (conflict) {
-      for (Index32 const e : cells) block_[std::size_t(e)] = none;
+      for (Index32 const e : cells) block_[e] = none;
       if (!sheets_.is_limit(*conflict)) return sheets_.make_limit(*conflict);
       return leave(out, cells, "lies among others whose indices contradict one another");
     }
@@ -238,41 +237,41 @@ class Search {
 
   /// Places what lies behind the sides of a cell. Returns the side behind which a cell has another place already.
   std::optional<CellSide> visit_neighbours(std::vector<Index32>& cells, Index32 e) {
-    Placed const own = placed_[std::size_t(e)];
-    int const block = block_[std::size_t(e)];
+    Placed const own = placed_[e];
+    int const block = block_[e];
     for (int side = 0; side < 6; ++side) {
       CellSide const s = cell_side(e, side);
       if (links_.behind(s) < 0 || sheets_.is_limit(s)) continue;
       HexLink const link = links_.link(s);
-      int const axis = side_axis[std::size_t(side)];
+      int const axis = side_axis[side];
       Placed there{own.at, link.turn->axes.inverse().then(own.axes)};
-      int const outwards = side_end[std::size_t(side)] == 1 ? 1 : -1;
-      there.at[std::size_t(own.axes.axis[std::size_t(axis)])] += outwards * own.axes.sign[std::size_t(axis)];
-      if (block_[std::size_t(link.cell)] == none) {
-        block_[std::size_t(link.cell)] = block;
-        placed_[std::size_t(link.cell)] = there;
+      int const outwards = side_end[side] == 1 ? 1 : -1;
+      there.at[own.axes.axis[axis]] += outwards * own.axes.sign[axis];
+      if (block_[link.cell] == none) {
+        block_[link.cell] = block;
+        placed_[link.cell] = there;
         cells.push_back(link.cell);
         continue;
       }
-      Placed const& known = placed_[std::size_t(link.cell)];
-      if (block_[std::size_t(link.cell)] != block || known.at != there.at || !(known.axes == there.axes)) return s;
+      Placed const& known = placed_[link.cell];
+      if (block_[link.cell] != block || known.at != there.at || !(known.axes == there.axes)) return s;
     }
     return {};
   }
 
   /// Why the cells are no block; empty: they are one now.
   std::string add_block(FoundBlocks& out, std::vector<Index32> const& cells) {
-    Index3 low = placed_[std::size_t(cells.front())].at, high = low;
+    Index3 low = placed_[cells.front()].at, high = low;
     for (Index32 const e : cells)
       for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], placed_[std::size_t(e)].at[a]);
-        high[a] = std::max(high[a], placed_[std::size_t(e)].at[a]);
+        low[a] = std::min(low[a], placed_[e].at[a]);
+        high[a] = std::max(high[a], placed_[e].at[a]);
       }
     Index3 const extent{high[0] - low[0] + 2, high[1] - low[1] + 2, high[2] - low[2] + 2};
     if (Index(extent[0] - 1) * (extent[1] - 1) * (extent[2] - 1) != Index(cells.size()))
       return "lies among others that fill no box of indices";
     for (Index32 const e : cells)
-      for (std::size_t a = 0; a < 3; ++a) placed_[std::size_t(e)].at[a] -= low[a];
+      for (std::size_t a = 0; a < 3; ++a) placed_[e].at[a] -= low[a];
     Mesh& mesh = out.mesh;
     auto const z = std::size_t(mesh.add_zone("block " + std::to_string(mesh.zones.size() + 1), extent));
     Zone const& zone = mesh.zones[z];
@@ -281,10 +280,10 @@ class Search {
     out.element.resize(first_cell + cells.size(), -1);
     bool one = true;
     for (Index32 const e : cells) {
-      Index3 const& p = placed_[std::size_t(e)].at;
+      Index3 const& p = placed_[e].at;
       out.element[first_cell + std::size_t(p[0] + Index(extent[0] - 1) * (p[1] + Index(extent[1] - 1) * p[2]))] = e;
       for (int c = 0; c < 8; ++c) {
-        Index32& node = out.node[std::size_t(zone.node(place_of(e, c)))];
+        Index32& node = out.node[zone.node(place_of(e, c))];
         Index32 const own = links_.node(e, c);
         one = one && (node < 0 || node == own);
         node = own;
@@ -299,17 +298,17 @@ class Search {
 
   /// The indices of a corner in the block of its cell.
   [[nodiscard]] Index3 place_of(Index32 e, int corner) const {
-    Placed const& placed = placed_[std::size_t(e)];
+    Placed const& placed = placed_[e];
     Index3 out = placed.at;
     for (std::size_t a = 0; a < 3; ++a) {
-      int const up = (corner_place[std::size_t(corner)] >> a) & 1;
-      out[std::size_t(placed.axes.axis[a])] += placed.axes.sign[a] > 0 ? up : 1 - up;
+      int const up = (corner_place[corner] >> a) & 1;
+      out[placed.axes.axis[a]] += placed.axes.sign[a] > 0 ? up : 1 - up;
     }
     return out;
   }
 
   void leave(FoundBlocks& out, std::vector<Index32> const& cells, std::string const& why) {
-    for (Index32 const e : cells) block_[std::size_t(e)] = left;
+    for (Index32 const e : cells) block_[e] = left;
     if (out.n_left == 0) {
       Index32 const first = *std::min_element(cells.begin(), cells.end());
       out.why_left = describe_element(named_, first) + " " + why;
@@ -319,9 +318,9 @@ class Search {
 
   /// Of all cells, where they are.
   [[nodiscard]] detail::CellPlaces places() const {
-    return {[this](Index32 e) { return block_[std::size_t(e)]; },
-            [this](Index32 e) -> Orientation const& { return placed_[std::size_t(e)].axes; },
-            [this](Index32 e) -> Index3 const& { return placed_[std::size_t(e)].at; },
+    return {[this](Index32 e) { return block_[e]; },
+            [this](Index32 e) -> Orientation const& { return placed_[e].axes; },
+            [this](Index32 e) -> Index3 const& { return placed_[e].at; },
             [this](Index32 e, int c) { return place_of(e, c); }};
   }
 
@@ -334,10 +333,9 @@ class Search {
     mesh.coordinates = Coordinates(mesh.n_nodes());
     for (std::size_t n = 0; n < out.node.size(); ++n) mesh.coordinates.set(Index(n), mesh_.coordinates[out.node[n]]);
     // Of a node's copies in the blocks the first leads back, in the plane that of the first plane.
-    std::vector<Index32> of_representative(std::size_t(mesh_.n_nodes()), -1);
-    for (std::size_t n = out.node.size(); n-- > 0;) of_representative[std::size_t(out.node[n])] = Index32(n);
-    for (Index32 n = 0; n < named_.n_nodes(); ++n)
-      out.in_blocks.push_back(of_representative[std::size_t(links_.representative(n))]);
+    std::vector<Index32> of_representative(mesh_.n_nodes(), -1);
+    for (std::size_t n = out.node.size(); n-- > 0;) of_representative[out.node[n]] = Index32(n);
+    for (Index32 n = 0; n < named_.n_nodes(); ++n) out.in_blocks.push_back(of_representative[links_.representative(n)]);
     bool const single =
         std::all_of(named_.zones.begin(), named_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
     for (Zone& zone : mesh.zones) zone.single_precision = single;
@@ -356,7 +354,7 @@ FoundBlocks find_blocks(HostInstance const& host, Mesh const& mesh, Unstructured
                         BoundaryFacePatches const& face_patches) {
   if (mesh.dimension == 3) return Search(host, mesh, topology, mesh).run(face_patches);
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    if (mesh.elements.type[std::size_t(e)] != ElementType::quadrilateral) {
+    if (mesh.elements.type[e] != ElementType::quadrilateral) {
       FoundBlocks out;
       out.n_left = mesh.n_elements();
       out.why_left = describe_element(mesh, e) + " is no quadrilateral";

@@ -12,7 +12,7 @@ namespace {
 
 bool has_middles(Mesh const& mesh) {
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    if (mesh.elements.type[std::size_t(e)] != ElementType::polyhedron &&
+    if (mesh.elements.type[e] != ElementType::polyhedron &&
         mesh.elements.nodes[e].size() > mesh.elements.corners(e).size())
       return true;
   return false;
@@ -21,8 +21,7 @@ bool has_middles(Mesh const& mesh) {
 /// The middles of a boundary face by the corners that they lie amid, ascending.
 std::map<std::vector<Index32>, Index32> middles_by_corners(Mesh const& mesh, BoundaryFaces const& faces, Index face) {
   std::map<std::vector<Index32>, Index32> out;
-  for (MiddleNode const& m : side_middles(mesh, faces.element[std::size_t(face)], faces.side[std::size_t(face)]))
-    out.emplace(m.amid, m.node);
+  for (MiddleNode const& m : side_middles(mesh, faces.element[face], faces.side[face])) out.emplace(m.amid, m.node);
   return out;
 }
 
@@ -37,24 +36,24 @@ class Pairing {
   Index add_to(std::size_t number) {
     Connection& c = mesh_.connections[number];
     std::size_t const before = c.nodes.size();
-    for (std::size_t n = 0; n < before; ++n) donor_[std::size_t(c.nodes[n])] = c.donor_nodes[n];
+    for (std::size_t n = 0; n < before; ++n) donor_[c.nodes[n]] = c.donor_nodes[n];
     for (Index f = 0; f < faces_.size(); ++f)
-      if (faces_.connection[std::size_t(f)] == Index32(2 * number)) add(c, f);
-    for (Index32 const n : c.nodes) donor_[std::size_t(n)] = -1;
+      if (faces_.connection[f] == Index32(2 * number)) add(c, f);
+    for (Index32 const n : c.nodes) donor_[n] = -1;
     return Index(c.nodes.size() - before);
   }
 
  private:
   void add(Connection& c, Index face) {
-    auto const there = middles_by_corners(mesh_, faces_, faces_.across[std::size_t(face)]);
+    auto const there = middles_by_corners(mesh_, faces_, faces_.across[face]);
     for (auto const& [corners, node] : middles_by_corners(mesh_, faces_, face)) {
-      if (donor_[std::size_t(node)] >= 0) continue;
+      if (donor_[node] >= 0) continue;
       std::vector<Index32> image;
-      for (Index32 const n : corners) image.push_back(donor_[std::size_t(n)]);
+      for (Index32 const n : corners) image.push_back(donor_[n]);
       std::sort(image.begin(), image.end());
       auto const found = there.find(image);
       if (found == there.end() || !coincide(c, node, found->second)) continue;
-      donor_[std::size_t(node)] = found->second;
+      donor_[node] = found->second;
       c.nodes.push_back(node);
       c.donor_nodes.push_back(found->second);
     }

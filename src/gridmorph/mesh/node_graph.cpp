@@ -42,30 +42,30 @@ class GraphMaker {
         elements_of_nodes_(elements_of_nodes),
         owner_(nodes_at_one_place(host, mesh, groups)) {
     for (Index32 n = 0; n < Index32(owner_.size()); ++n)
-      if (owner_[std::size_t(n)] != n) others_.push_back({owner_[std::size_t(n)], n});
+      if (owner_[n] != n) others_.push_back({owner_[n], n});
     std::sort(others_.begin(), others_.end());
   }
 
   NodeGraph run() && {
     Index const n = mesh_.n_nodes();
     CsrGraph lists;
-    lists.first.assign(std::size_t(n) + 1, 0);
+    lists.first.assign(n + 1, 0);
     // Every part keeps its lists to itself until it is known where they go.
     constexpr Index part = 4096;
-    std::vector<std::vector<Index32>> found(std::size_t((n + part - 1) / part));
+    std::vector<std::vector<Index32>> found((n + part - 1) / part);
     detail::for_all_parts(host_, "gridmorph::node_graph::find", Index(found.size()), [&](Index p) {
       Ends ends;
       for (Index node = p * part; node < std::min(n, (p + 1) * part); ++node) {
         neighbours(Index32(node), ends);
-        lists.first[std::size_t(node) + 1] = std::ssize(ends.list);
-        found[std::size_t(p)].insert(found[std::size_t(p)].end(), ends.list.begin(), ends.list.end());
+        lists.first[node + 1] = std::ssize(ends.list);
+        found[p].insert(found[p].end(), ends.list.begin(), ends.list.end());
       }
     });
     std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
-    lists.item.resize(std::size_t(lists.first.back()));
+    lists.item.resize(lists.first.back());
     detail::for_all_parts(host_, "gridmorph::node_graph::join", Index(found.size()), [&](Index p) {
-      auto const& own = found[std::size_t(p)];
-      std::copy(own.begin(), own.end(), lists.item.begin() + lists.first[std::size_t(p * part)]);
+      auto const& own = found[p];
+      std::copy(own.begin(), own.end(), lists.item.begin() + lists.first[p * part]);
     });
     return {std::move(owner_), std::move(lists)};
   }
@@ -79,7 +79,7 @@ class GraphMaker {
   /// Neighbours of a representative, ascending; none of another node.
   void neighbours(Index32 node, Ends& ends) const {
     ends.begin(node);
-    if (owner_[std::size_t(node)] != node) return;
+    if (owner_[node] != node) return;
     add_ends(node, node, ends);
     for (auto at = std::lower_bound(others_.begin(), others_.end(), Other{node, 0});
          at != others_.end() && at->owner == node; ++at)
@@ -91,10 +91,10 @@ class GraphMaker {
   /// Owners of the other ends of all edges at a node.
   void add_ends(Index32 node, Index32 own, Ends& ends) const {
     auto const add = [&](Index32 end) {
-      if (Index32 const other = owner_[std::size_t(end)]; other != own) ends.add(other);
+      if (Index32 const other = owner_[end]; other != own) ends.add(other);
     };
     for (Index32 const e : elements_of_nodes_[node]) {
-      ElementType const type = mesh_.elements.type[std::size_t(e)];
+      ElementType const type = mesh_.elements.type[e];
       auto const nodes = mesh_.elements.corners(e);
       if (type == ElementType::polyhedron) {
         add_polyhedron(node, e, add);
@@ -102,8 +102,7 @@ class GraphMaker {
         for (std::size_t k = 0; k < 4; ++k) add(nodes[k]);
       } else {
         for (int k = 0; k < n_edges(type); ++k) {
-          Index32 const a = nodes[std::size_t(edge_corner(type, k, 0))],
-                        b = nodes[std::size_t(edge_corner(type, k, 1))];
+          Index32 const a = nodes[edge_corner(type, k, 0)], b = nodes[edge_corner(type, k, 1)];
           if (a == node || b == node) add(a == node ? b : a);
         }
       }

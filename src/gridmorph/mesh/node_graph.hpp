@@ -17,7 +17,7 @@ struct NodeGraph {
   CsrGraph neighbours;
 
   [[nodiscard]] Index size() const { return Index(representative.size()); }
-  [[nodiscard]] bool carries(Index32 n) const { return representative[std::size_t(n)] == n; }
+  [[nodiscard]] bool carries(Index32 n) const { return representative[n] == n; }
 };
 
 /// Edges of polyhedra are those of their faces. The lists are those of UnstructuredTopology. Cost O(corners of all

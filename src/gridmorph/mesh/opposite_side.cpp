@@ -23,13 +23,13 @@ OfType find_of_type(ElementType type, int side) {
   auto const is_of = [&](std::array<std::int8_t, 4> const& list, int corner) {
     return std::find(list.begin(), list.begin() + corners, std::int8_t(corner)) != list.begin() + corners;
   };
-  for (int c = 0; c < corners; ++c) out.below[std::size_t(c)] = std::int8_t(face_corner(type, side, c));
+  for (int c = 0; c < corners; ++c) out.below[c] = std::int8_t(face_corner(type, side, c));
   for (int c = 0; c < corners; ++c)
     // The one edge of this corner that leaves the side.
     for (int k = 0; k < n_edges(type); ++k) {
-      int const a = edge_corner(type, k, 0), b = edge_corner(type, k, 1), own = out.below[std::size_t(c)];
+      int const a = edge_corner(type, k, 0), b = edge_corner(type, k, 1), own = out.below[c];
       int const other = a == own ? b : b == own ? a : -1;
-      if (other >= 0 && !is_of(out.below, other)) out.above[std::size_t(c)] = std::int8_t(other);
+      if (other >= 0 && !is_of(out.below, other)) out.above[c] = std::int8_t(other);
     }
   for (int s = 0; s < n_faces(type); ++s) {
     bool same = n_face_corners(type, s) == corners;
@@ -46,12 +46,12 @@ OfType const& of_type(ElementType type, int side) {
   static auto const tables = [&] {
     std::array<std::array<OfType, most_sides>, types.size()> out{};
     for (std::size_t t = 0; t < types.size(); ++t)
-      for (int s = 0; s < n_faces(types[t]); ++s) out[t][std::size_t(s)] = find_of_type(types[t], s);
+      for (int s = 0; s < n_faces(types[t]); ++s) out[t][s] = find_of_type(types[t], s);
     return out;
   }();
   static OfType const none;
   auto const at = std::find(types.begin(), types.end(), type);
-  return at == types.end() ? none : tables[std::size_t(at - types.begin())][std::size_t(side)];
+  return at == types.end() ? none : tables[at - types.begin()][side];
 }
 
 void find_of_polyhedron(Mesh const& mesh, Index element, int side, OppositeSide& out) {
@@ -72,7 +72,7 @@ void find_of_polyhedron(Mesh const& mesh, Index element, int side, OppositeSide&
       Index32 const a = face[k], b = face[(k + 1) % face.size()];
       int const at_a = place(a), at_b = place(b);
       if ((at_a < 0) == (at_b < 0)) continue;
-      Index32& above = out.above[std::size_t(at_a >= 0 ? at_a : at_b)];
+      Index32& above = out.above[at_a >= 0 ? at_a : at_b];
       Index32 const end = at_a >= 0 ? b : a;
       if (above >= 0 && above != end) return;  // two edges leave
       above = end;
@@ -95,14 +95,14 @@ void find_opposite_side(Mesh const& mesh, Index element, int side, OppositeSide&
   out.side = -1;
   out.below.clear();
   out.above.clear();
-  ElementType const type = mesh.elements.type[std::size_t(element)];
+  ElementType const type = mesh.elements.type[element];
   if (type == ElementType::polyhedron) return find_of_polyhedron(mesh, element, side, out);
   OfType const& found = of_type(type, side);
   if (found.side < 0) return;
   auto const nodes = mesh.elements.corners(element);
   for (std::size_t c = 0; c < std::size_t(found.n); ++c) {
-    out.below.push_back(nodes[std::size_t(found.below[c])]);
-    out.above.push_back(nodes[std::size_t(found.above[c])]);
+    out.below.push_back(nodes[found.below[c]]);
+    out.above.push_back(nodes[found.above[c]]);
   }
   out.side = found.side;
 }

@@ -75,17 +75,17 @@ std::vector<std::pair<Index, Index>> pairs_of_elements(Mesh const& mesh, Partner
 
 /// Nodes that some element has, but none of those that stay.
 std::vector<char> lost_nodes(Mesh const& mesh, std::vector<char> const& left_out) {
-  std::vector<char> out(std::size_t(mesh.n_nodes()), 0);
+  std::vector<char> out(mesh.n_nodes(), 0);
   for (char const leaving : {1, 0})
     for (Index e = 0; e < mesh.n_elements(); ++e)
-      if (left_out[std::size_t(e)] == leaving)
-        for (Index32 const n : mesh.elements.nodes[e]) out[std::size_t(n)] = leaving;
+      if (left_out[e] == leaving)
+        for (Index32 const n : mesh.elements.nodes[e]) out[n] = leaving;
   return out;
 }
 
 template <class Nodes>
 bool any_lost(Nodes const& nodes, std::vector<char> const& lost) {
-  return std::any_of(nodes.begin(), nodes.end(), [&](Index32 n) { return lost[std::size_t(n)] != 0; });
+  return std::any_of(nodes.begin(), nodes.end(), [&](Index32 n) { return lost[n] != 0; });
 }
 
 Index lost_faces(Mesh const& mesh, std::vector<char> const& lost) {
@@ -109,7 +109,7 @@ void leave_out(Mesh& mesh, std::vector<char> const& elements, std::vector<char> 
   auto const renumber = [&](std::span<Index32 const> old) {
     std::vector<Index32> out;
     for (Index32 const n : old)
-      if (node[std::size_t(n)] >= 0) out.push_back(node[std::size_t(n)]);
+      if (node[n] >= 0) out.push_back(node[n]);
     return out;
   };
   Elements const old = std::exchange(mesh.elements, {});
@@ -122,15 +122,15 @@ void leave_out(Mesh& mesh, std::vector<char> const& elements, std::vector<char> 
     mesh.add_zone(zone.name, staying(nodes, zone.first_node, zone.size()));
     mesh.zones.back().single_precision = zone.single_precision;
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
-      if (elements[std::size_t(e)] != 0) continue;
-      mesh.add_element(old.type[std::size_t(e)], renumber(old.nodes[e]));
+      if (elements[e] != 0) continue;
+      mesh.add_element(old.type[e], renumber(old.nodes[e]));
       mesh.elements.number.push_back(old.number.empty() ? Index32(mesh.first_number + e - zone.first_element)
-                                                        : old.number[std::size_t(e)]);
+                                                        : old.number[e]);
     }
   }
   mesh.coordinates = Coordinates(mesh.n_nodes());
   for (Index n = 0; n < x.size(); ++n)
-    if (node[std::size_t(n)] >= 0) mesh.coordinates.set(node[std::size_t(n)], x[n]);
+    if (node[n] >= 0) mesh.coordinates.set(node[n], x[n]);
   for (Patch& patch : mesh.patches) {
     CsrGraph const faces = std::exchange(patch.faces, {});
     for (Index f = 0; f < faces.size(); ++f)
@@ -142,7 +142,7 @@ void leave_out(Mesh& mesh, std::vector<char> const& elements, std::vector<char> 
     c.nodes.clear();
     c.donor_nodes.clear();
     for (std::size_t n = 0; n < all.nodes.size(); ++n) {
-      Index32 const own = node[std::size_t(all.nodes[n])], donor = node[std::size_t(all.donor_nodes[n])];
+      Index32 const own = node[all.nodes[n]], donor = node[all.donor_nodes[n]];
       if (own < 0 || donor < 0) continue;
       c.nodes.push_back(own);
       c.donor_nodes.push_back(donor);
@@ -152,7 +152,7 @@ void leave_out(Mesh& mesh, std::vector<char> const& elements, std::vector<char> 
   for (Subset& subset : mesh.subsets) {
     std::vector<Index32> const all = std::exchange(subset.elements, {});
     for (Index32 const e : all)
-      if (element[std::size_t(e)] >= 0) subset.elements.push_back(element[std::size_t(e)]);
+      if (element[e] >= 0) subset.elements.push_back(element[e]);
     CsrGraph const faces = std::exchange(subset.faces, {});
     for (Index f = 0; f < faces.size(); ++f)
       if (!any_lost(faces[f], nodes)) subset.faces.add(renumber(faces[f]));
@@ -170,10 +170,10 @@ Index leave_out_repeated_elements(Mesh& mesh) {
     if (pitch >= partners.size()) break;
     auto const pairs = pairs_of_elements(mesh, partners[pitch]);
     if (pairs.empty()) continue;
-    std::vector<char> first(std::size_t(mesh.n_elements()), 0), second = first;
+    std::vector<char> first(mesh.n_elements(), 0), second = first;
     for (auto const& [e, image] : pairs) {
-      first[std::size_t(e)] = 1;
-      second[std::size_t(image)] = 1;
+      first[e] = 1;
+      second[image] = 1;
     }
     auto const lost_first = lost_nodes(mesh, first), lost_second = lost_nodes(mesh, second);
     if (lost_faces(mesh, lost_first) <= lost_faces(mesh, lost_second))

@@ -14,7 +14,7 @@ namespace {
 
 bool are_one(std::vector<Index32> const& owner, TouchingPatches const& pair) {
   for (std::size_t n = 0; n < pair.nodes.size(); ++n)
-    if (owner[std::size_t(pair.nodes[n])] != owner[std::size_t(pair.other_nodes[n])]) return false;
+    if (owner[pair.nodes[n]] != owner[pair.other_nodes[n]]) return false;
   return true;
 }
 
@@ -46,12 +46,12 @@ namespace {
 
 /// Nodes of patches, those of connections that do not match left out.
 std::vector<Index> open_nodes(Mesh const& mesh) {
-  std::vector<std::uint8_t> open(std::size_t(mesh.n_nodes()), 0);
+  std::vector<std::uint8_t> open(mesh.n_nodes(), 0);
   for (bool const slides : {false, true})
     for (auto const& patch : mesh.patches)
       if ((patch.kind == PatchKind::connection) == slides)
         for (auto const* list : {&patch.faces.item, &patch.nodes})
-          for (Index32 const n : *list) open[std::size_t(n)] = slides ? 0 : 1;
+          for (Index32 const n : *list) open[n] = slides ? 0 : 1;
   std::vector<Index> out;
   for (std::size_t n = 0; n < open.size(); ++n)
     if (open[n] != 0) out.push_back(Index(n));
@@ -67,13 +67,13 @@ std::vector<Index32> nodes_at_one_place(HostInstance const& host, Mesh const& me
       mesh.coordinates, open_nodes(mesh), [&](Index n) { return mesh.zone_of(n); },
       coincidence_tolerance(extent_of(host, mesh.coordinates).size(), coordinate_resolution(mesh)));
   for (auto const& [a, b] : pairs)
-    if (groups.empty() || groups[std::size_t(a)] == groups[std::size_t(b)]) sets.join(Index32(a), Index32(b));
+    if (groups.empty() || groups[a] == groups[b]) sets.join(Index32(a), Index32(b));
   return sets.roots();
 }
 
 std::string describe(Mesh const& mesh, TouchingPatches const& pair) {
-  return "patches " + describe_patch(mesh, mesh.patches[std::size_t(pair.patch)]) + " and " +
-         describe_patch(mesh, mesh.patches[std::size_t(pair.other)]) + " coincide in all of their " +
+  return "patches " + describe_patch(mesh, mesh.patches[pair.patch]) + " and " +
+         describe_patch(mesh, mesh.patches[pair.other]) + " coincide in all of their " +
          std::to_string(pair.nodes.size()) + " nodes, but no connection joins them; " +
          (pair.one ? "their nodes move as one, and a rule for one of them holds for both, unless one of them slides "
                      "with a blade row"

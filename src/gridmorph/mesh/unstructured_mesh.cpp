@@ -35,7 +35,7 @@ std::size_t place_of_polyhedron(Mesh const& mesh, Index element) {
 }  // namespace
 
 int n_sides(Mesh const& mesh, Index element) {
-  ElementType const type = mesh.elements.type[std::size_t(element)];
+  ElementType const type = mesh.elements.type[element];
   if (type != ElementType::polyhedron) return n_faces(type);
   std::size_t const p = place_of_polyhedron(mesh, element);
   return int(mesh.polyhedra.first_face[p + 1] - mesh.polyhedra.first_face[p]);
@@ -43,10 +43,10 @@ int n_sides(Mesh const& mesh, Index element) {
 
 std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
                                     std::array<Index32, max_face_corners>& room) {
-  ElementType const type = mesh.elements.type[std::size_t(element)];
+  ElementType const type = mesh.elements.type[element];
   if (type == ElementType::polyhedron)
     return mesh.polyhedra.faces[mesh.polyhedra.first_face[place_of_polyhedron(mesh, element)] + side];
-  Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(element)];
+  Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[element];
   int const n = n_face_corners(type, side);
   std::size_t kept = 0;
   for (int c = 0; c < n; ++c) {
@@ -58,7 +58,7 @@ std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
 
 std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side) {
   std::vector<MiddleNode> out;
-  ElementType const type = mesh.elements.type[std::size_t(element)];
+  ElementType const type = mesh.elements.type[element];
   auto const nodes = mesh.elements.nodes[element];
   int const corners = int(mesh.elements.corners(element).size());
   if (type == ElementType::polyhedron || int(nodes.size()) == corners) return out;
@@ -70,9 +70,9 @@ std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side) 
   auto const take = [&](int place, std::vector<Index32> amid) {
     if (std::size_t(place) >= nodes.size()) return;
     std::sort(amid.begin(), amid.end());
-    out.push_back({nodes[std::size_t(place)], std::move(amid)});
+    out.push_back({nodes[place], std::move(amid)});
   };
-  auto const corner = [&](int c) { return nodes[std::size_t(c)]; };
+  auto const corner = [&](int c) { return nodes[c]; };
   for (int e = 0; e < n_edges(type); ++e)
     if (on_side(edge_corner(type, e, 0)) && on_side(edge_corner(type, e, 1)))
       take(corners + e, {corner(edge_corner(type, e, 0)), corner(edge_corner(type, e, 1))});
@@ -94,34 +94,34 @@ std::vector<Index32> patch_nodes(Patch const& patch) {
 
 std::array<Index, n_element_types> count_types(Mesh const& mesh, int zone) {
   std::array<Index, n_element_types> count{};
-  Index const begin = zone < 0 ? 0 : mesh.zones[std::size_t(zone)].first_element;
-  Index const end = zone < 0 ? mesh.n_elements() : begin + mesh.zones[std::size_t(zone)].n_elements;
-  for (Index e = begin; e < end; ++e) ++count[std::size_t(mesh.elements.type[std::size_t(e)])];
+  Index const begin = zone < 0 ? 0 : mesh.zones[zone].first_element;
+  Index const end = zone < 0 ? mesh.n_elements() : begin + mesh.zones[zone].n_elements;
+  for (Index e = begin; e < end; ++e) ++count[std::size_t(mesh.elements.type[e])];
   return count;
 }
 
 Index node_number_in_file(BoundaryMesh const& mesh, Index node) {
   auto const& order = mesh.file_order.node;
-  Index const place = order.empty() ? node : order[std::size_t(node)];
-  return place - mesh.zones[std::size_t(mesh.zone_of(node))].first_node + mesh.first_number;
+  Index const place = order.empty() ? node : order[node];
+  return place - mesh.zones[mesh.zone_of(node)].first_node + mesh.first_number;
 }
 
 Index number_in_file(Mesh const& mesh, Index element) {
-  if (!mesh.elements.number.empty()) return mesh.elements.number[std::size_t(element)];
+  if (!mesh.elements.number.empty()) return mesh.elements.number[element];
   auto const& order = mesh.file_order.element;
-  Index const place = order.empty() ? element : order[std::size_t(element)];
-  return place - mesh.zones[std::size_t(mesh.zone_of_element(element))].first_element + mesh.first_number;
+  Index const place = order.empty() ? element : order[element];
+  return place - mesh.zones[mesh.zone_of_element(element)].first_element + mesh.first_number;
 }
 
 std::string describe_element(Mesh const& mesh, Index element) {
-  auto const& zone = mesh.zones[std::size_t(mesh.zone_of_element(element))];
+  auto const& zone = mesh.zones[mesh.zone_of_element(element)];
   if (zone.is_block()) {
     Index const ni = std::max(zone.extent[0] - 1, 1), nj = std::max(zone.extent[1] - 1, 1);
     Index const cell = element - zone.first_element;
     return "zone '" + zone.name + "' cell (i " + std::to_string(cell % ni + 1) + ", j " +
            std::to_string(cell / ni % nj + 1) + ", k " + std::to_string(cell / (ni * nj) + 1) + ")";
   }
-  return "zone '" + zone.name + "' " + std::string(to_string(mesh.elements.type[std::size_t(element)])) + " " +
+  return "zone '" + zone.name + "' " + std::string(to_string(mesh.elements.type[element])) + " " +
          std::to_string(number_in_file(mesh, element));
 }
 
@@ -179,7 +179,7 @@ class MeshCheck {
       Index bad = 0, first = -1;
       for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
         auto const nodes = mesh_.elements.nodes[e];
-        ElementType const type = mesh_.elements.type[std::size_t(e)];
+        ElementType const type = mesh_.elements.type[e];
         bool const fits = (type == ElementType::polyhedron || int(nodes.size()) >= n_corners(type)) &&
                           (mesh_.dimension == 2) == is_surface(type) && inside(zone, nodes);
         if (!fits && bad++ == 0) first = e;
@@ -273,7 +273,7 @@ class MeshCheck {
         problems_.add(mesh_.source + ": patch '" + patch.name + "' lies in no zone");
         continue;
       }
-      auto const& zone = mesh_.zones[std::size_t(patch.zone)];
+      auto const& zone = mesh_.zones[patch.zone];
       if (!inside(zone, patch.nodes) || !inside(zone, patch.faces.item))
         problems_.add(mesh_.source + ": patch " + describe_patch(mesh_, patch) +
                       " names nodes outside its zone, which has " + std::to_string(zone.size()) + " nodes");
@@ -284,8 +284,8 @@ class MeshCheck {
     for (auto const& c : mesh_.connections) {
       bool const zones = c.zone >= 0 && c.zone < int(mesh_.zones.size()) && c.donor_zone >= 0 &&
                          c.donor_zone < int(mesh_.zones.size());
-      if (!zones || c.nodes.size() != c.donor_nodes.size() || !inside(mesh_.zones[std::size_t(c.zone)], c.nodes) ||
-          !inside(mesh_.zones[std::size_t(c.donor_zone)], c.donor_nodes))
+      if (!zones || c.nodes.size() != c.donor_nodes.size() || !inside(mesh_.zones[c.zone], c.nodes) ||
+          !inside(mesh_.zones[c.donor_zone], c.donor_nodes))
         problems_.add(mesh_.source + ": connection '" + c.name +
                       "' does not pair nodes of its zone with as many of its donor zone");
     }

@@ -21,10 +21,10 @@ CsrGraph invert(HostInstance const& host, char const* label, Index n_keys, Index
       if (std::find(keys.begin(), key, *key) == key) put(*key, Index32(i));
   });
   CsrGraph out;
-  out.first.resize(std::size_t(n_keys) + 1, 0);
-  out.item.resize(std::size_t(buckets.size()));
+  out.first.resize(n_keys + 1, 0);
+  out.item.resize(buckets.size());
   buckets.for_each_key([&](Index32 key, Index at, std::span<Index32 const> items) {
-    out.first[std::size_t(key) + 1] = at + Index(items.size());
+    out.first[key + 1] = at + Index(items.size());
     std::copy(items.begin(), items.end(), out.item.begin() + at);
   });
   return out;
@@ -71,10 +71,10 @@ inline int sort_side(ElementType type, Index32 const* node, int side, std::array
   for (int c = 0; c < n_face_corners(type, side); ++c) {
     Index32 const corner = node[face_corner(type, side, c)];
     int at = n;
-    while (at > 0 && sorted[std::size_t(at) - 1] > corner) --at;
-    if (at > 0 && sorted[std::size_t(at) - 1] == corner) continue;
-    for (int k = n; k > at; --k) sorted[std::size_t(k)] = sorted[std::size_t(k) - 1];
-    sorted[std::size_t(at)] = corner;
+    while (at > 0 && sorted[at - 1] > corner) --at;
+    if (at > 0 && sorted[at - 1] == corner) continue;
+    for (int k = n; k > at; --k) sorted[k] = sorted[k - 1];
+    sorted[at] = corner;
     ++n;
   }
   return n;
@@ -180,14 +180,13 @@ std::vector<InnerSide> open_inner_sides(Mesh const& mesh, UnstructuredTopology& 
       int found = 0;
       for (Index32 const e : topology.elements_of_nodes[rarest(topology.elements_of_nodes, nodes)])
         for (int s = 0; s < n_sides(mesh, e); ++s) {
-          if (topology.sides.of(e)[std::size_t(s)] < 0 || !same_set(side_nodes(mesh, e, s, room), nodes)) continue;
-          if (found < 2) inner.element[std::size_t(found)] = e, inner.side[std::size_t(found)] = Index32(s);
+          if (topology.sides.of(e)[s] < 0 || !same_set(side_nodes(mesh, e, s, room), nodes)) continue;
+          if (found < 2) inner.element[found] = e, inner.side[found] = Index32(s);
           ++found;
         }
       if (found != 2) continue;  // no side, or one that was opened for another patch
       for (std::size_t k = 0; k < 2; ++k)
-        topology.sides.neighbour[std::size_t(topology.sides.first[std::size_t(inner.element[k])] + inner.side[k])] =
-            ElementSides::boundary;
+        topology.sides.neighbour[topology.sides.first[inner.element[k]] + inner.side[k]] = ElementSides::boundary;
       out.push_back(inner);
     }
   return out;
@@ -197,39 +196,39 @@ void pair_inner_faces(std::vector<InnerSide> const& inner, BoundaryFaces& bounda
   boundary.behind.assign(boundary.element.size(), -1);
   auto const face = [&](Index32 element, Index32 side) {
     auto f = std::lower_bound(boundary.element.begin(), boundary.element.end(), element) - boundary.element.begin();
-    while (boundary.side[std::size_t(f)] != side) ++f;
+    while (boundary.side[f] != side) ++f;
     return Index32(f);
   };
   for (InnerSide const& one : inner) {
     Index32 const a = face(one.element[0], one.side[0]), b = face(one.element[1], one.side[1]);
-    boundary.behind[std::size_t(a)] = b;
-    boundary.behind[std::size_t(b)] = a;
+    boundary.behind[a] = b;
+    boundary.behind[b] = a;
   }
 }
 
 /// Finds the faces behind connections: a face whose nodes are all paired, with a face of the donors there.
 void cross_connections(Mesh const& mesh, UnstructuredTopology& topology) {
-  std::vector<Index32> donor(std::size_t(mesh.n_nodes()), -1);
+  std::vector<Index32> donor(mesh.n_nodes(), -1);
   for (std::size_t number = 0; number < mesh.connections.size(); ++number)
     for (int const way : {0, 1}) {
       auto const& c = mesh.connections[number];
       auto const& own = way == 0 ? c.nodes : c.donor_nodes;
       auto const& other = way == 0 ? c.donor_nodes : c.nodes;
-      for (std::size_t n = 0; n < own.size(); ++n) donor[std::size_t(own[n])] = other[n];
+      for (std::size_t n = 0; n < own.size(); ++n) donor[own[n]] = other[n];
       std::vector<Index32> image;
       for (Index32 const node : own)
         for (Index32 const face : topology.faces_of_nodes[node]) {
-          auto& across = topology.boundary.across[std::size_t(face)];
+          auto& across = topology.boundary.across[face];
           if (across >= 0) continue;
           image.clear();
-          for (Index32 const n : topology.boundary.nodes[face]) image.push_back(donor[std::size_t(n)]);
+          for (Index32 const n : topology.boundary.nodes[face]) image.push_back(donor[n]);
           if (contains(image, -1)) continue;
           Index32 const there = find_boundary_face(topology, image);
           if (there < 0 || there == face) continue;
           across = there;
-          topology.boundary.connection[std::size_t(face)] = Index32(2 * number) + way;
+          topology.boundary.connection[face] = Index32(2 * number) + way;
         }
-      for (Index32 const node : own) donor[std::size_t(node)] = -1;
+      for (Index32 const node : own) donor[node] = -1;
     }
 }
 
@@ -243,14 +242,14 @@ CsrGraph elements_of_nodes(HostInstance const& host, Mesh const& mesh) {
 ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
   ElementSides out;
   Index const n = mesh.n_elements();
-  out.first.resize(std::size_t(n) + 1, 0);
-  for (Index e = 0; e < n; ++e) out.first[std::size_t(e) + 1] = out.first[std::size_t(e)] + n_sides(mesh, e);
-  out.neighbour.resize(std::size_t(out.first.back()), ElementSides::collapsed);
+  out.first.resize(n + 1, 0);
+  for (Index e = 0; e < n; ++e) out.first[e + 1] = out.first[e] + n_sides(mesh, e);
+  out.neighbour.resize(out.first.back(), ElementSides::collapsed);
   detail::IndexBuckets<KeyedSide> const buckets(
       host, "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
-        ElementType const type = mesh.elements.type[std::size_t(e)];
+        ElementType const type = mesh.elements.type[e];
         if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
-        Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[std::size_t(e)];
+        Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[e];
         if (type == ElementType::tetrahedron && !names_twice(node)) return put_tetrahedron(node, Index32(e), put);
         for (int s = 0; s < n_faces(type); ++s) {
           std::array<Index32, max_face_corners> sorted{-1, -1, -1, -1};
@@ -260,8 +259,7 @@ ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
         }
       });
   auto const take = [&](std::span<KeyedSide const> alike) {
-    for (KeyedSide const& own : alike)
-      out.neighbour[std::size_t(out.first[std::size_t(own.element)] + own.side)] = behind(mesh, own, alike);
+    for (KeyedSide const& own : alike) out.neighbour[out.first[own.element] + own.side] = behind(mesh, own, alike);
   };
   buckets.for_each_key([&](Index32, Index, std::span<KeyedSide> sides) {
     // Around most nodes a search for the other one of a pair is quicker than a sort.
@@ -316,11 +314,11 @@ std::vector<Index32> coincident_nodes(Mesh const& mesh) {
 }
 
 std::vector<std::uint8_t> periodic_nodes(BoundaryMesh const& mesh) {
-  std::vector<std::uint8_t> paired(std::size_t(mesh.n_nodes()), 0);
+  std::vector<std::uint8_t> paired(mesh.n_nodes(), 0);
   for (auto const& c : mesh.connections)
     if (c.periodic)
       for (auto const* list : {&c.nodes, &c.donor_nodes})
-        for (Index32 const n : *list) paired[std::size_t(n)] = 1;
+        for (Index32 const n : *list) paired[n] = 1;
   return paired;
 }
 
@@ -342,11 +340,11 @@ std::vector<Index32> match_points(HostInstance const& host, Coordinates const& c
   std::sort(sorted.begin(), sorted.end(), before);
   std::vector<Index32> out(points.size(), -1);
   detail::for_all(host, "gridmorph::match_points", Index(points.size()), [&](Index p) {
-    Vec3 x = coordinates[points[std::size_t(p)]];
+    Vec3 x = coordinates[points[p]];
     if (periodic) x = periodic->declared(x);
     double const along = dot(line, x);
     double nearest = tolerance;
-    Index32& best = out[std::size_t(p)];
+    Index32& best = out[p];
     for (auto at = std::lower_bound(sorted.begin(), sorted.end(), Placed{along - 1.01 * tolerance, -1}, before);
          at != sorted.end() && at->along <= along + 1.01 * tolerance; ++at) {
       double const d = distance(x, coordinates[at->node]);

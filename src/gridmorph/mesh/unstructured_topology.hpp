@@ -25,7 +25,7 @@ struct ElementSides {
   std::vector<Index32> neighbour;  ///< element of the same zone, or one of the constants above
 
   [[nodiscard]] std::span<Index32 const> of(Index e) const {
-    return {neighbour.data() + first[std::size_t(e)], std::size_t(first[std::size_t(e) + 1] - first[std::size_t(e)])};
+    return {neighbour.data() + first[e], std::size_t(first[e + 1] - first[e])};
   }
 };
 

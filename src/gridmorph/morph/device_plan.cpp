@@ -56,9 +56,9 @@ void join_lines(LineTables const& from, Shift const& shift, LineTables& to) {
     to.targets.push_back(target);
   }
   if (!from.end_positions.empty()) {
-    to.end_positions.resize(std::size_t(to.n_end_values));
+    to.end_positions.resize(to.n_end_values);
     append(to.end_positions, from.end_positions);
-    to.end_pivots.resize(std::size_t(to.n_end_values));
+    to.end_pivots.resize(to.n_end_values);
     append(to.end_pivots, from.end_pivots);
   }
   append(to.swept_positions, from.swept_positions);
@@ -107,8 +107,8 @@ std::vector<kernels::NearFieldLine> shifted(std::vector<kernels::NearFieldLine> 
 kernels::VolumeKind kind_of(kernels::VolumeBox const& box, JoinedTables const& joined) {
   auto kind = box.common < 0 ? kernels::VolumeKind::plain : kernels::VolumeKind::turned;
   for (std::int32_t n = 0; n < box.n_terms; ++n) {
-    kernels::VolumeTerm const& term = joined.terms[std::size_t(box.first_term + n)];
-    kernels::Chain const& chain = joined.lines.chains[std::size_t(term.chain)];
+    kernels::VolumeTerm const& term = joined.terms[box.first_term + n];
+    kernels::Chain const& chain = joined.lines.chains[term.chain];
     if (chain.first_side >= 0) return kernels::VolumeKind::any;
     if (chain.turn != kernels::TurnLaw::none || term.matrix >= 0) kind = kernels::VolumeKind::turned;
   }
@@ -188,8 +188,8 @@ DeviceTurns<Exec> device_turns(Exec const& exec, Plan const& plan, JoinedTables&
   out.ends = Kokkos::View<double*, typename Exec::memory_space>(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::turned_ends"),
       out.ends_stride() * fields);
-  joined.lines.end_positions.resize(std::size_t(out.n_ends));
-  joined.lines.end_pivots.resize(std::size_t(out.n_ends));
+  joined.lines.end_positions.resize(out.n_ends);
+  joined.lines.end_pivots.resize(out.n_ends);
   joined.sides.positions.resize(joined.sides.t.size());
   out.end_position = positions(exec, joined.lines.end_positions, "end_positions");
   out.end_pivot = positions(exec, joined.lines.end_pivots, "end_pivots");

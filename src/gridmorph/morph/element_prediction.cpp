@@ -18,37 +18,37 @@ class SampledElements {
  public:
   SampledElements(Mesh const& mesh, PreparedUnstructured const& prepared, std::span<signed char const> signs)
       : mesh_(mesh), prepared_(prepared), signs_(signs), looked_at_(std::size_t(mesh.n_elements()), 0) {
-    std::vector<char> carried(std::size_t(mesh.n_nodes()), 0);
-    for (Index32 const n : prepared.plan.driving) carried[std::size_t(n)] = 1;
-    for (Index32 const n : prepared.plan.columns.node) carried[std::size_t(n)] = 1;
+    std::vector<char> carried(mesh.n_nodes(), 0);
+    for (Index32 const n : prepared.plan.driving) carried[n] = 1;
+    for (Index32 const n : prepared.plan.columns.node) carried[n] = 1;
     carried_.reserve(carried.size());
-    for (Index32 const owner : prepared.graph.representative) carried_.push_back(carried[std::size_t(owner)]);
+    for (Index32 const owner : prepared.graph.representative) carried_.push_back(carried[owner]);
   }
 
   /// Corners of an element that move with a column: 0 none, 1 some, 2 all.
   [[nodiscard]] int in_columns(Index e) const {
     auto const corners = mesh_.elements.corners(e);
     auto const carried =
-        std::count_if(corners.begin(), corners.end(), [&](Index32 node) { return carried_[std::size_t(node)] != 0; });
+        std::count_if(corners.begin(), corners.end(), [&](Index32 node) { return carried_[node] != 0; });
     auto const n = std::ptrdiff_t(corners.size());
     return carried == 0 ? 0 : carried < n ? 1 : 2;
   }
   [[nodiscard]] int region(Index e) const {
     if (in_columns(e) == 2) return 0;
-    switch (prepared_.report.regions.element[std::size_t(e)]) {
+    switch (prepared_.report.regions.element[e]) {
       case Region::near: return 1;
       case Region::partial: return 2;
       case Region::far: break;
     }
     return 3;
   }
-  [[nodiscard]] bool has_shape(Index e) const { return signs_[std::size_t(e)] != 0; }
+  [[nodiscard]] bool has_shape(Index e) const { return signs_[e] != 0; }
 
-  void add(Index e) { looked_at_[std::size_t(e)] = has_shape(e) ? 1 : 0; }
+  void add(Index e) { looked_at_[e] = has_shape(e) ? 1 : 0; }
   [[nodiscard]] std::vector<Index> elements() const {
     std::vector<Index> out;
     for (Index e = 0; e < Index(looked_at_.size()); ++e)
-      if (looked_at_[std::size_t(e)] != 0) out.push_back(e);
+      if (looked_at_[e] != 0) out.push_back(e);
     return out;
   }
 
@@ -96,8 +96,8 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     while (n / out.every > enough) out.every *= 2;
 
   SampledElements sample(mesh, prepared, signs);
-  std::vector<double> relative(std::size_t(n), 0);
-  std::vector<char> at_end(std::size_t(n), 0);
+  std::vector<double> relative(n, 0);
+  std::vector<char> at_end(n, 0);
   std::vector<BeforeAndAfter> measures;
   std::vector<Index> looked_at;
   host.visit([&](auto const& exec) {
@@ -105,37 +105,37 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     auto const x = views(mesh.coordinates), y = views(displaced);
     detail::for_all(exec, "gridmorph::predict::relative_displacement", n, [&](Index e) {
       if (!sample.has_shape(e)) return;
-      relative[std::size_t(e)] = tables.relative_displacement(x, y, e);
-      at_end[std::size_t(e)] = sample.in_columns(e) == 1 ? 1 : 0;
+      relative[e] = tables.relative_displacement(x, y, e);
+      at_end[e] = sample.in_columns(e) == 1 ? 1 : 0;
     });
     for (Index e = 0; e < n; e += out.every) sample.add(e);
     for (Index e = 0; e < n; ++e)
-      if (at_end[std::size_t(e)] != 0) sample.add(e);
+      if (at_end[e] != 0) sample.add(e);
     std::vector<Index> strained(static_cast<std::size_t>(n));
-    for (Index e = 0; e < n; ++e) strained[std::size_t(e)] = e;
+    for (Index e = 0; e < n; ++e) strained[e] = e;
     auto const most = strained.begin() + std::min(n, options.most_strained);
     std::nth_element(strained.begin(), most, strained.end(), [&](Index a, Index b) {
-      double const p = relative[std::size_t(a)], q = relative[std::size_t(b)];
+      double const p = relative[a], q = relative[b];
       return p != q ? p > q : a < b;
     });
     std::for_each(strained.begin(), most, [&](Index e) { sample.add(e); });
     looked_at = sample.elements();
     measures.resize(looked_at.size());
     detail::for_all(exec, "gridmorph::predict::measures", Index(looked_at.size()), [&](Index k) {
-      Index const e = looked_at[std::size_t(k)];
-      double const sign = signs[std::size_t(e)];
+      Index const e = looked_at[k];
+      double const sign = signs[e];
       auto const of = [&](auto const& at) { return tables.measures(at, e, sign); };
       BeforeAndAfter m{of(x), of(y), {}};
       if (m.lost()) m.flat = tables.flat_element(x, y, e, sign);
-      measures[std::size_t(k)] = m;
+      measures[k] = m;
     });
   });
 
   std::array<PredictedElements, region_names.size()> regions;
   for (std::size_t k = 0; k < looked_at.size(); ++k) {
     Index const e = looked_at[k];
-    take(e, measures[k], relative[std::size_t(e)], out.all);
-    take(e, measures[k], relative[std::size_t(e)], regions[std::size_t(sample.region(e))]);
+    take(e, measures[k], relative[e], out.all);
+    take(e, measures[k], relative[e], regions[sample.region(e)]);
   }
   for (std::size_t r = 0; r < regions.size(); ++r)
     if (regions[r].elements > 0) out.regions.push_back({region_names[r], regions[r]});

@@ -76,7 +76,7 @@ std::vector<Vec3> ffd_gradient(MorphPlan const& plan, int rule, std::span<Vec3 c
   Asked const asked = asked_by(plan);
   ResolvedMotion const& resolved = asked.motion.motion();
   auto const* ffd = rule >= 0 && std::size_t(rule) < resolved.rules.size()
-                        ? std::get_if<FfdRule>(&resolved.rules[std::size_t(rule)].rule)
+                        ? std::get_if<FfdRule>(&resolved.rules[rule].rule)
                         : nullptr;
   if (ffd == nullptr)
     throw ConfigError(std::string(who_ffd) + ": rule number " + std::to_string(rule) + " of " +
@@ -91,11 +91,11 @@ std::vector<Vec3> ffd_gradient(MorphPlan const& plan, int rule, std::span<Vec3 c
   std::vector<Index> const given_by = deciding_requests(asked.boundary, asked.motion);
   for (std::size_t m = 0; m < dJ_db.size(); ++m) {
     if (given_by[m] < 0) continue;
-    auto const& request = asked.boundary.requests[std::size_t(given_by[m])];
+    auto const& request = asked.boundary.requests[given_by[m]];
     if (request.rule == rule && alone) {
-      Vec3 const g = request.rotation < 0 ? dJ_db[m] : asked.rotations[std::size_t(request.rotation)] * dJ_db[m];
+      Vec3 const g = request.rotation < 0 ? dJ_db[m] : asked.rotations[request.rotation] * dJ_db[m];
       lattice.add_gradient(asked.motion.boundary().coordinates()[request.node], g, out);
-    } else if (request.rule == rule || goes_along(resolved.rules[std::size_t(request.rule)].rule)) {
+    } else if (request.rule == rule || goes_along(resolved.rules[request.rule].rule)) {
       left[m] = dJ_db[m];
       any_left = any_left || !(dJ_db[m] == Vec3{});
     }

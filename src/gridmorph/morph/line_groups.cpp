@@ -62,13 +62,13 @@ PlacedBundle placed(Nodes nodes) {
 
 /// The part of a bundle between two lines along a (axis 0) or b.
 PlacedBundle part(PlacedBundle p, int axis, int first, int end) {
-  Index const skip = first - p.first[std::size_t(axis)];
+  Index const skip = first - p.first[axis];
   auto const along = [&](kernels::LineStep const& s) { return axis == 0 ? s.a : s.b; };
   p.bundle.value += skip * along(p.bundle.value_step);
   if (p.bundle.t >= 0) p.bundle.t += skip * along(p.bundle.t_step);
   p.bundle.x += skip * along(p.bundle.x_step);
-  p.first[std::size_t(axis)] = first;
-  p.n[std::size_t(axis)] = end - first;
+  p.first[axis] = first;
+  p.n[axis] = end - first;
   return p;
 }
 

@@ -203,10 +203,10 @@ std::vector<BoundaryPlace> MorphPlan::boundary_places() const {
   std::vector<BoundaryPlace> out;
   for (auto const& r : requests) {
     int const z = boundary.zone_of(r.node);
-    Zone const& zone = boundary.zones()[std::size_t(z)];
+    Zone const& zone = boundary.zones()[z];
     Index3 const index = zone.is_block() ? zone.index(r.node) : Index3{int(r.node - zone.first_node), 0, 0};
     out.push_back({r.boundary_node, r.patch, z, index, {}});
-    if (r.rotation >= 0) out.back().rotation = blocks->plan().rotations[std::size_t(r.rotation)];
+    if (r.rotation >= 0) out.back().rotation = blocks->plan().rotations[r.rotation];
   }
   std::stable_sort(out.begin(), out.end(),
                    [](auto const& a, auto const& b) { return a.boundary_node < b.boundary_node; });
@@ -237,12 +237,11 @@ NearCells near_cells_of(PreparedMorph const& prepared) {
   Kokkos::View<std::uint8_t*, Kokkos::HostSpace> const mask("gridmorph::near_cells", std::size_t(mesh.n_cells()));
   std::vector<Index> const first = first_cells(mesh);
   for (auto const& box : prepared.plan().near_field) {
-    Zone const& zone = mesh.zones[std::size_t(box.zone)];
+    Zone const& zone = mesh.zones[box.zone];
     Index const ni = zone.extent[0] - 1, nj = zone.extent[1] - 1;
     for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
       for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
-        for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i)
-          mask(first[std::size_t(box.zone)] + i + ni * (j + nj * k)) = 1;
+        for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i) mask(first[box.zone] + i + ni * (j + nj * k)) = 1;
   }
   NearCells out{mask, {}};
   for (auto const& layer : prepared.options.boundary_layers)

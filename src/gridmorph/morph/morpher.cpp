@@ -37,8 +37,7 @@ BasicVectorView<Memory, ReadOnly> with_axes(BasicVectorView<Memory, ReadOnly> co
   auto const seen = [&]<class Real>(Real*) {
     Kokkos::LayoutStride const layout(std::size_t(v.size()), std::size_t(of.stride));
     auto const view = [&](int k) {
-      return Kokkos::View<Real*, Kokkos::LayoutStride, Memory>(
-          static_cast<Real*>(all[std::size_t(axes[std::size_t(k)])]), layout);
+      return Kokkos::View<Real*, Kokkos::LayoutStride, Memory>(static_cast<Real*>(all[axes[k]]), layout);
     };
     return BasicVectorView<Memory, ReadOnly>(view(0), view(1), view(2));
   };

@@ -92,15 +92,15 @@ Coordinates Predictor::morphed(Plan const& plan, std::span<Vec3 const> boundary)
 void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<char>& seen,
                     PredictedCells& out) const {
   CoarseMesh const& coarse = planner_.coarse();
-  Zone const& zone = coarse.mesh.zones[std::size_t(box.zone)];
-  double const handedness = handedness_[std::size_t(box.zone)];
+  Zone const& zone = coarse.mesh.zones[box.zone];
+  double const handedness = handedness_[box.zone];
   Index3 p{};
   for (p[2] = box.cells.begin[2]; p[2] < box.cells.end[2]; ++p[2])
     for (p[1] = box.cells.begin[1]; p[1] < box.cells.end[1]; ++p[1])
       for (p[0] = box.cells.begin[0]; p[0] < box.cells.end[0]; ++p[0]) {
         Index const first = zone.node(p);
-        if (seen[std::size_t(first)] != 0 || !coarse.is_cell(box.zone, p)) continue;
-        seen[std::size_t(first)] = 1;
+        if (seen[first] != 0 || !coarse.is_cell(box.zone, p)) continue;
+        seen[first] = 1;
         kernels::HexCell const before = cell_of(coarse.mesh.coordinates, zone, first);
         kernels::HexCell const after = cell_of(morphed, zone, first);
         kernels::CellMeasures const measures = kernels::cell_measures(after, handedness);
@@ -125,13 +125,13 @@ void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<
 Prediction Predictor::measure(Plan const& plan, Plan const& names, Coordinates const& morphed) const {
   Prediction out;
   out.every = planner_.every();
-  std::vector<char> seen(std::size_t(plan.n_nodes), 0);
+  std::vector<char> seen(plan.n_nodes, 0);
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     Stage const& stage = plan.stages[s];
     std::vector<PredictedChain> chains;
     for (std::string const& name : names.stages[s].description) chains.push_back({names.stages[s].name, name, {}});
     for (std::size_t b = 0; b < stage.cells.size(); ++b)
-      add(stage.cells[b], morphed, seen, chains[std::size_t(stage.chain_of_cells[b])].cells);
+      add(stage.cells[b], morphed, seen, chains[stage.chain_of_cells[b]].cells);
     for (PredictedChain& chain : chains) {
       join(out.all, chain.cells);
       if (chain.cells.cells > 0) out.chains.push_back(std::move(chain));

@@ -107,7 +107,7 @@ struct HostPlan {
     auto const terms = on_host(plan.terms);
     for (kernels::VolumeBox const& box : on_host(plan.boxes.entries))
       for (int m = 0; m < box.n_terms; ++m) {
-        kernels::VolumeTerm const& term = terms[std::size_t(box.first_term + m)];
+        kernels::VolumeTerm const& term = terms[box.first_term + m];
         if (box.n[0] > 0 && box.n[1] > 0 && box.n[2] > 0) volume[term.chain].push_back(bundle_of(box, term));
       }
   }
@@ -118,7 +118,7 @@ struct HostPlan {
     BundlesOfChains out;
     for (kernels::SkeletonSweep const& sweep : sweeps) out[sweep.chain].push_back(bundle_of(sweep));
     for (auto const& [chain, list] : volume) {
-      Index const first = chains[std::size_t(chain)].first_end_value;
+      Index const first = chains[chain].first_end_value;
       if (first >= first_end && first < first_end + n_ends)
         out[chain].insert(out[chain].end(), list.begin(), list.end());
     }
@@ -134,7 +134,7 @@ Index add_slabs(Exec const& exec, HostPlan const& host, std::vector<kernels::Lin
   std::vector<Index> first_part;
   Index room = 0;
   for (std::int32_t const number : corrected) {
-    kernels::Chain const& chain = host.chains[std::size_t(number)];
+    kernels::Chain const& chain = host.chains[number];
     auto const [begin, end] =
         std::equal_range(groups.begin(), groups.end(), kernels::LineGroup{number, 0, 0, 0, 0, 0, 0},
                          [](kernels::LineGroup const& a, kernels::LineGroup const& b) { return a.chain < b.chain; });
@@ -146,7 +146,7 @@ Index add_slabs(Exec const& exec, HostPlan const& host, std::vector<kernels::Lin
                          has_edges && direction == 0 ? room + 4 * Index(w) * chain.n_s : -1});
     if (has_edges) room += 4 * Index(chain.n_b) * chain.n_s;
     for (int q = 0; q < 4; ++q) {
-      kernels::Side const& side = host.sides[std::size_t(chain.first_side + q)];
+      kernels::Side const& side = host.sides[chain.first_side + q];
       Index const side_end = side.first + Index(chain.n_s) * side.n_w;
       if (stage.n_side_nodes == 0) stage.first_side_node = side.first;
       stage.n_side_nodes = std::max(stage.n_side_nodes, side_end - stage.first_side_node);
@@ -168,7 +168,7 @@ TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns)
   Dependencies walls_by_slot, walls_by_root;
   for (std::size_t r = 0; r < roots.size(); ++r) {
     for (Index k = roots[r].first_neighbour; k < roots[r].first_neighbour + roots[r].n_neighbours; ++k)
-      parts.push_back({neighbours[std::size_t(k)].slot, k, neighbours[std::size_t(k)].matrix});
+      parts.push_back({neighbours[k].slot, k, neighbours[k].matrix});
     parts.push_back({roots[r].centre, Index(neighbours.size() + r)});
     for (Index m = 0; m < 2; ++m) {
       kernels::RootEnd const& end = ends[r].end[m];
@@ -182,7 +182,7 @@ TransposedTurns<Exec> turns_of(Exec const& exec, DeviceTurns<Exec> const& turns)
     if (end_walls[e].wall >= 0)
       walls_by_root.push_back({end_walls[e].wall, e});
     else
-      walls_by_slot.push_back({roots[std::size_t(end_walls[e].root)].slot, e});
+      walls_by_slot.push_back({roots[end_walls[e].root].slot, e});
   }
   return {copies_of(exec, std::move(parts)), copies_of(exec, std::move(of_ends)), dependents(exec, walls_by_slot),
           dependents(exec, walls_by_root)};

@@ -25,7 +25,7 @@ Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vecto
     for (auto const& selector : rule.patches) {
       if (selector == "type:periodic") continue;
       try {
-        for (int const p : boundary.select(selector).patches) named[std::size_t(p)] = 1;
+        for (int const p : boundary.select(selector).patches) named[p] = 1;
       } catch (MotionError const&) {
         return motion;  // resolve() says what is wrong, with all other problems
       }
@@ -35,7 +35,7 @@ Motion with_periodic_patches(Boundary const& boundary, Motion motion, std::vecto
   for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
     auto const& nodes = boundary.surface(int(p)).nodes;
     if (named[p] != 0 || boundary.patches()[p].kind != PatchKind::other || nodes.empty()) continue;
-    if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })) continue;
+    if (!std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[n] != 0; })) continue;
     auto const& families = boundary.patches()[p].families;
     free.push_back(families.empty() ? boundary.patches()[p].name : families.front());
   }
@@ -65,11 +65,10 @@ class RulesOfConnections {
     std::vector<std::uint8_t> const paired = boundary_.periodic_nodes();
     for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       auto const& nodes = boundary_.surface(int(p)).nodes;
-      is_side_[p] =
-          !nodes.empty() && boundary_.patches()[p].kind != PatchKind::region &&
-                  std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[std::size_t(n)] != 0; })
-              ? 1
-              : 0;
+      is_side_[p] = !nodes.empty() && boundary_.patches()[p].kind != PatchKind::region &&
+                            std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return paired[n] != 0; })
+                        ? 1
+                        : 0;
     }
   }
 
@@ -130,10 +129,10 @@ class RulesOfConnections {
   }
 
   /// Whether a connection is periodic and no rule names it, not even `free`.
-  [[nodiscard]] bool is_left(int c) const { return motion_.interface[std::size_t(c)].by_default; }
+  [[nodiscard]] bool is_left(int c) const { return motion_.interface[c].by_default; }
 
   void give(int c, Sides const& sides, int rule) {
-    motion_.interface[std::size_t(c)] = {rule, false};
+    motion_.interface[c] = {rule, false};
     held_[rule].insert(sides.own.begin(), sides.own.end());
     held_[rule].insert(sides.donor.begin(), sides.donor.end());
     given_.push_back({c, rule});
@@ -236,12 +235,10 @@ class Finder {
                         motion.regions, notes);
   }
 
-  Index32 owner(Index n) const { return graph_.representative[std::size_t(n)]; }
+  Index32 owner(Index n) const { return graph_.representative[n]; }
 
   [[nodiscard]] ResolvedMotion const& rules() const { return out_.motion->motion(); }
-  [[nodiscard]] bool is_explicit(int patch) const {
-    return out_.motion->is_explicit(rules().patch[std::size_t(patch)].rule);
-  }
+  [[nodiscard]] bool is_explicit(int patch) const { return out_.motion->is_explicit(rules().patch[patch].rule); }
 
   /// Whether a rule could move a patch, whatever it gives now.
   [[nodiscard]] bool could_move(int p) const {
@@ -257,7 +254,7 @@ class Finder {
     for (std::size_t begin = 0, end = 1; begin < nodes.size(); begin = end, end = nodes.size()) {
       std::vector<Vec3> points, u(end - begin);
       for (std::size_t n = begin; n < end; ++n) points.push_back(mesh_.coordinates[nodes[n]]);
-      out_.motion->displacement(rules().patch[std::size_t(p)].rule, points, u);
+      out_.motion->displacement(rules().patch[p].rule, points, u);
       if (std::any_of(u.begin(), u.end(), [](Vec3 const& v) { return !(v == Vec3{}); })) return true;
     }
     return false;
@@ -285,7 +282,7 @@ class Finder {
     Rule const& rule = rules().patch_rule(p);
     if (std::holds_alternative<CircumferentialSlideRule>(rule) || std::holds_alternative<FollowRule>(rule))
       return false;
-    PatchKind const kind = patches_[std::size_t(p)].kind;
+    PatchKind const kind = patches_[p].kind;
     return kind == PatchKind::wall || kind == PatchKind::other;
   }
 
@@ -293,7 +290,7 @@ class Finder {
     if (!walls.empty()) {
       for (int const p : select_patches(mesh_, walls)) {
         if (!is_explicit(p))
-          throw MotionError("the near field names patch " + describe_patch(mesh_, patches_[std::size_t(p)]) +
+          throw MotionError("the near field names patch " + describe_patch(mesh_, patches_[p]) +
                             " whose rule leaves its displacement to the volume; name walls with explicit rules");
         out_.driving_patches.push_back(p);
       }
@@ -309,8 +306,8 @@ class Finder {
   }
 
   void find_known() {
-    std::vector<std::uint8_t> drives(std::size_t(mesh_.n_nodes()), 0);
-    is_known_.assign(std::size_t(mesh_.n_nodes()), 0);
+    std::vector<std::uint8_t> drives(mesh_.n_nodes(), 0);
+    is_known_.assign(mesh_.n_nodes(), 0);
     auto const each_explicit = [&](auto&& visit) {
       for (std::size_t p = 0; p < patches_.size(); ++p)
         if (is_explicit(int(p))) visit(rules().patch[p].rule, int(p), -1, out_.nodes_of(int(p)));
@@ -324,11 +321,11 @@ class Finder {
     each_explicit([&](int, int p, int, auto const& nodes) {
       bool const driving = p >= 0 && std::binary_search(out_.driving_patches.begin(), out_.driving_patches.end(), p);
       for (auto const n : nodes) {
-        is_known_[std::size_t(owner(n))] = 1;
-        if (driving) drives[std::size_t(owner(n))] = 1;
+        is_known_[owner(n)] = 1;
+        if (driving) drives[owner(n)] = 1;
       }
     });
-    std::vector<Index32> slot(std::size_t(mesh_.n_nodes()), -1);
+    std::vector<Index32> slot(mesh_.n_nodes(), -1);
     for (std::size_t n = 0; n < is_known_.size(); ++n)
       if (is_known_[n]) {
         slot[n] = Index32(out_.known.size());
@@ -336,7 +333,7 @@ class Finder {
         out_.drives.push_back(drives[n]);
       }
     each_explicit([&](int r, int p, int c, auto const& nodes) {
-      for (auto const n : nodes) out_.requests.requests.push_back({slot[std::size_t(owner(n))], Index(n), -1, r, p, c});
+      for (auto const n : nodes) out_.requests.requests.push_back({slot[owner(n)], Index(n), -1, r, p, c});
     });
     out_.requests.name(out_.motion->boundary().names());
     out_.requests.sort(rules().rules);
@@ -346,17 +343,17 @@ class Finder {
 
   void find_slip_nodes() {
     std::vector<std::set<Index32>> surfaces;
-    place_.assign(std::size_t(mesh_.n_nodes()), -1);
+    place_.assign(mesh_.n_nodes(), -1);
     for (std::size_t p = 0; p < patches_.size(); ++p)
       out_.motion->each_slip_surface(int(p), [&](int surface, std::vector<Index> const& nodes) {
         for (Index const n : nodes) {
           Index32 const o = owner(n);
-          if (is_known_[std::size_t(o)]) out_.given_on_slip.push_back({slot_of(o), Index32(n), int(p), surface});
-          if (place_[std::size_t(o)] < 0) {
-            place_[std::size_t(o)] = Index32(surfaces.size());
+          if (is_known_[o]) out_.given_on_slip.push_back({slot_of(o), Index32(n), int(p), surface});
+          if (place_[o] < 0) {
+            place_[o] = Index32(surfaces.size());
             surfaces.emplace_back();
           }
-          surfaces[std::size_t(place_[std::size_t(o)])].insert(Index32(surface));
+          surfaces[place_[o]].insert(Index32(surface));
         }
       });
     for (auto const& set : surfaces) surfaces_at_.add(std::vector<Index32>(set.begin(), set.end()));
@@ -372,7 +369,7 @@ class Finder {
   }
   /// Numbers of the slip surfaces that a representative lies on.
   [[nodiscard]] std::span<Index32 const> surfaces_of(Index32 n) const {
-    Index32 const at = place_[std::size_t(n)];
+    Index32 const at = place_[n];
     return at < 0 ? std::span<Index32 const>{} : surfaces_at_[at];
   }
 
@@ -432,21 +429,21 @@ class Finder {
           std::int32_t const rotation = rotations.then(reached[a], link.rotation);
           reached[link.to] = rotation;
           members.push_back({link.to, rotation});
-          if (!is_known_[std::size_t(link.to)]) out_.images.push_back({link.to, start, rotation});
+          if (!is_known_[link.to]) out_.images.push_back({link.to, start, rotation});
           front.push_back(link.to);
         }
       }
-      if (!is_known_[std::size_t(start)]) return joint.add(members, 0, around, start, out_.joint_slip);
+      if (!is_known_[start]) return joint.add(members, 0, around, start, out_.joint_slip);
       for (std::size_t m = 0; m < members.size(); ++m)
-        if (is_known_[std::size_t(members[m].node)]) {
+        if (is_known_[members[m].node]) {
           Index32 const slot = slot_of(members[m].node);
-          done[std::size_t(slot)] = 1;
+          done[slot] = 1;
           joint.add(members, m, {}, slot, out_.given_slip);
         }
     };
     // Nodes whose displacement is known pass it on; the others move by the mean of their class.
     for (auto const& [n, own] : links)
-      if (is_known_[std::size_t(n)]) spread(n);
+      if (is_known_[n]) spread(n);
     for (auto const& [n, own] : links) spread(n);
     for (std::size_t k = 0; k < out_.known.size(); ++k)
       if (done[k] == 0 && !surfaces_of(out_.known[k]).empty())
@@ -493,9 +490,9 @@ std::vector<int> row_of_nodes(Mesh const& mesh, Motion const& motion) {
     auto const known = std::find(blades.begin(), blades.end(), of);
     int const row = int(known - blades.begin()) + 1;
     if (known == blades.end()) blades.push_back(of);
-    if (out.empty()) out.assign(std::size_t(mesh.n_nodes()), 0);
+    if (out.empty()) out.assign(mesh.n_nodes(), 0);
     for (int const p : patches)
-      for (Index32 const n : patch_nodes(mesh.patches[std::size_t(p)])) out[std::size_t(n)] = row;
+      for (Index32 const n : patch_nodes(mesh.patches[p])) out[n] = row;
   }
   return out;
 }

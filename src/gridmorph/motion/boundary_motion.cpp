@@ -73,8 +73,7 @@ struct BoundaryMotion::Impl {
       : boundary(other.boundary), motion(other.motion), second_plane(other.second_plane), slip(other.slip) {
     for (std::size_t r = 0; r < now.rules.size(); ++r) motion.rules[r].rule = now.rules[r].rule;
     for (auto const& [r, target] : other.targets)
-      targets[r] =
-          std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[std::size_t(r)].rule).share);
+      targets[r] = std::make_shared<TargetMotion const>(*target, std::get<TargetRule>(rules[r].rule).share);
     each<InflateRule>(
         [&](int r, InflateRule const& rule) { inflations.try_emplace(r, other.inflations.at(r), rule, label(r)); });
     each<FfdRule>([&](int r, FfdRule const& rule) { lattices.try_emplace(r, other.lattices.at(r), rule, label(r)); });
@@ -119,7 +118,7 @@ struct BoundaryMotion::Impl {
     Problems problems;
     BesideTarget beside{slip->surfaces, {}, {}};
     for (int p = 0; p < int(boundary->patches().size()); ++p) {
-      if (motion.patch[std::size_t(p)].rule < 0) continue;
+      if (motion.patch[p].rule < 0) continue;
       if (std::holds_alternative<FixedRule>(motion.patch_rule(p))) beside.fixed.push_back(p);
       if (std::holds_alternative<FreeRule>(motion.patch_rule(p))) beside.free.push_back(p);
     }
@@ -172,8 +171,8 @@ struct BoundaryMotion::Impl {
         require_direct(named);
         std::map<int, MovedWall const*> walls;
         for (int const p : named) {
-          int const w = motion.patch[std::size_t(p)].rule;
-          if (std::holds_alternative<SectionsRule>(rules[std::size_t(w)].rule))
+          int const w = motion.patch[p].rule;
+          if (std::holds_alternative<SectionsRule>(rules[w].rule))
             throw MotionError(label(int(r)) + ": of: " + boundary->describe_patch(p) +
                               " has the rule 'sections', which is about blades and not about the walls they stand on");
           walls[w] = &moved_wall(w, label(int(r)));
@@ -196,8 +195,8 @@ struct BoundaryMotion::Impl {
     auto const displacement = [this, w](std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate_rule(w, points, out);
     };
-    bool const anywhere = !std::holds_alternative<TargetRule>(rules[std::size_t(w)].rule) &&
-                          !std::holds_alternative<InflateRule>(rules[std::size_t(w)].rule);
+    bool const anywhere =
+        !std::holds_alternative<TargetRule>(rules[w].rule) && !std::holds_alternative<InflateRule>(rules[w].rule);
     return moved_walls.try_emplace(w, *boundary, patches_of(w), displacement, anywhere, name).first->second;
   }
 
@@ -205,14 +204,14 @@ struct BoundaryMotion::Impl {
   /// go. Walls that carry features together are one.
   void carry(std::vector<std::string>& said) {
     auto const displacement = [this](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
-      evaluate(motion.patch[std::size_t(p)].rule, points, out);
+      evaluate(motion.patch[p].rule, points, out);
     };
     DisjointSets<int> together(rules.size());  // carrying rules and those of their walls
     each<CarryRule>([&](int r, CarryRule const& rule) {
       std::vector<int> const walls = boundary->select_patches(rule.of);
       require_direct(walls);
       carried.try_emplace(r, *boundary, motion, patches_of(r), rule, walls, displacement, label(r));
-      for (int const p : walls) together.join(r, motion.patch[std::size_t(p)].rule);
+      for (int const p : walls) together.join(r, motion.patch[p].rule);
       said.push_back(label(r) + ": " + described(carried.at(r).features()));
     });
     std::map<int, std::shared_ptr<CarryingWall const>> made;  // none changes what the others start from
@@ -243,14 +242,14 @@ struct BoundaryMotion::Impl {
     std::vector<char> limits(motion.patch.size(), 0);
     for (std::size_t p = 0; p < motion.patch.size(); ++p) {
       int const r = motion.patch[p].rule;
-      if (set_of_rule[std::size_t(r)] != set)
+      if (set_of_rule[r] != set)
         limits[p] = is_explicit(r) ? 1 : 0;
-      else if (is_direct(rules[std::size_t(r)].rule))
+      else if (is_direct(rules[r].rule))
         walls.push_back(int(p));
     }
     std::vector<CarriedFeatures::Feature const*> features;
     for (auto const& [r, of_rule] : carried)
-      if (set_of_rule[std::size_t(r)] == set)
+      if (set_of_rule[r] == set)
         for (auto const& feature : of_rule.features()) features.push_back(&feature);
     return std::make_shared<CarryingWall const>(*boundary, walls, features, limits, own);
   }
@@ -259,7 +258,7 @@ struct BoundaryMotion::Impl {
   void attach(std::vector<std::string>& said) {
     Problems problems;
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
-      evaluate(motion.patch[std::size_t(p)].rule, points, out);
+      evaluate(motion.patch[p].rule, points, out);
     };
     auto const walls_of = [&](std::vector<std::string> const& of) {
       std::vector<int> walls = boundary->select_patches(of);
@@ -319,8 +318,8 @@ struct BoundaryMotion::Impl {
   }
 
   [[nodiscard]] bool is_explicit(int rule) const {
-    Rule const& own = rules[std::size_t(rule)].rule;
-    return is_direct(own) || row_of_rule[std::size_t(rule)] != nullptr || std::holds_alternative<AttachedRule>(own) ||
+    Rule const& own = rules[rule].rule;
+    return is_direct(own) || row_of_rule[rule] != nullptr || std::holds_alternative<AttachedRule>(own) ||
            std::holds_alternative<CarryRule>(own) || std::holds_alternative<WakeRule>(own) ||
            std::holds_alternative<ShockRule>(own) || std::holds_alternative<PrescribedRule>(own) ||
            std::holds_alternative<ExtendRule>(own);
@@ -438,7 +437,7 @@ std::shared_ptr<Boundary const> const& BoundaryMotion::shared_boundary() const {
 ResolvedMotion const& BoundaryMotion::motion() const { return impl_->motion; }
 
 std::vector<SlipSurface> const& BoundaryMotion::slip_surfaces() const { return impl_->slip->surfaces; }
-int BoundaryMotion::slip_surface_of(int patch) const { return impl_->slip->of_patch[std::size_t(patch)]; }
+int BoundaryMotion::slip_surface_of(int patch) const { return impl_->slip->of_patch[patch]; }
 
 void BoundaryMotion::each_slip_surface(int patch,
                                        std::function<void(int, std::vector<Index> const&)> const& visit) const {
@@ -451,7 +450,7 @@ void BoundaryMotion::each_slip_surface(int patch,
 
 SlipSurface const* BoundaryMotion::slip_surface(int patch) const {
   int const s = slip_surface_of(patch);
-  return s < 0 ? nullptr : &slip_surfaces()[std::size_t(s)];
+  return s < 0 ? nullptr : &slip_surfaces()[s];
 }
 
 bool BoundaryMotion::slides_upstream(int rule, Vec3 const& point) const {
@@ -460,7 +459,7 @@ bool BoundaryMotion::slides_upstream(int rule, Vec3 const& point) const {
 }
 
 bool BoundaryMotion::gives_way(int rule, int patch) const {
-  RowMotion const* row = impl_->row_of_rule[std::size_t(rule)];
+  RowMotion const* row = impl_->row_of_rule[rule];
   return row != nullptr && patch >= 0 && row->gives_way_to(patch);
 }
 

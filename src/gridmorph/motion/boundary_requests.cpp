@@ -21,7 +21,7 @@ using Request = BoundaryRequests::Request;
 
 /// The name of what asks, as users know it.
 std::string const& requester(BoundaryRequests const& boundary, Request const& r) {
-  return r.patch < 0 ? boundary.interface_names[std::size_t(r.interface)] : boundary.patch_names[std::size_t(r.patch)];
+  return r.patch < 0 ? boundary.interface_names[r.interface] : boundary.patch_names[r.patch];
 }
 
 class Evaluation {
@@ -41,7 +41,7 @@ class Evaluation {
     Request const& r = boundary_.requests[n];
     auto const node = std::size_t(r.boundary_node);
     Index& given_by = given_by_[node];
-    Request const* first = given_by < 0 ? nullptr : &boundary_.requests[std::size_t(given_by)];
+    Request const* first = given_by < 0 ? nullptr : &boundary_.requests[given_by];
     if (first == nullptr || yields(*first, r)) {
       given_by = Index(n);
       values_[node] = value;
@@ -76,7 +76,7 @@ class Evaluation {
   }
   [[nodiscard]] double turn_between(Request const& a, Request const& b) const {
     auto const rotation = [&](Request const& r) {
-      return r.rotation < 0 ? RigidTransform{}.rotation : rotations_[std::size_t(r.rotation)];
+      return r.rotation < 0 ? RigidTransform{}.rotation : rotations_[r.rotation];
     };
     return norm(rotation_vector(rotation(b) * transpose(rotation(a))));
   }
@@ -110,10 +110,9 @@ class Evaluation {
     return out;
   }
 
-  [[nodiscard]] MotionRule const& rule(Request const& r) const { return motion_.rules[std::size_t(r.rule)]; }
+  [[nodiscard]] MotionRule const& rule(Request const& r) const { return motion_.rules[r.rule]; }
   [[nodiscard]] bool is_default(Request const& r) const {
-    return r.patch >= 0 && std::size_t(r.patch) < motion_.patch.size() &&
-           motion_.patch[std::size_t(r.patch)].by_default;
+    return r.patch >= 0 && std::size_t(r.patch) < motion_.patch.size() && motion_.patch[r.patch].by_default;
   }
   [[nodiscard]] bool is_prescribed(Request const& r) const {
     return std::holds_alternative<PrescribedRule>(rule(r).rule);
@@ -154,7 +153,7 @@ void BoundaryRequests::name(NamedBoundary const& boundary) {
 }
 
 void BoundaryRequests::sort(std::vector<MotionRule> const& rules) {
-  auto const order = [&](Request const& r) { return std::pair(rules[std::size_t(r.rule)].rank, r.rule); };
+  auto const order = [&](Request const& r) { return std::pair(rules[r.rule].rank, r.rule); };
   std::stable_sort(requests.begin(), requests.end(),
                    [&](Request const& a, Request const& b) { return order(a) < order(b); });
 }
@@ -172,7 +171,7 @@ void require_in_plane(BoundaryRequests const& boundary, BoundaryMotion const& mo
   double largest = 0, most = 0;
   Request const* out = nullptr;
   for (Request const& r : boundary.requests) {
-    Vec3 const& u = displacement[std::size_t(r.boundary_node)];
+    Vec3 const& u = displacement[r.boundary_node];
     largest = std::max(largest, norm(u));
     if (double const off = std::abs(dot(normal, u)); off > most) {
       most = off;
@@ -182,13 +181,12 @@ void require_in_plane(BoundaryRequests const& boundary, BoundaryMotion const& mo
   double const tolerance =
       displacement_tolerance(motion.motion().conformity_tolerance, surfaces.size(), surfaces.precision().resolution());
   if (out == nullptr || most <= std::max(tolerance, rounding * largest)) return;
-  MotionRule const& rule = motion.motion().rules[std::size_t(out->rule)];
-  throw MotionError((rule.where.empty() ? "rule " + std::to_string(out->rule + 1) : rule.where) + ": rule '" +
-                    std::string(rule_name(rule.rule)) + "' displaces " + surfaces.describe_node(out->node) + " of " +
-                    requester(boundary, *out) + " by " + to_text(displacement[std::size_t(out->boundary_node)], 3) +
-                    ", " + to_text(most, 3) +
-                    " of it out of the plane of a 2-D mesh; move it within its plane, turn it about " +
-                    to_text(normal, 3));
+  MotionRule const& rule = motion.motion().rules[out->rule];
+  throw MotionError(
+      (rule.where.empty() ? "rule " + std::to_string(out->rule + 1) : rule.where) + ": rule '" +
+      std::string(rule_name(rule.rule)) + "' displaces " + surfaces.describe_node(out->node) + " of " +
+      requester(boundary, *out) + " by " + to_text(displacement[out->boundary_node], 3) + ", " + to_text(most, 3) +
+      " of it out of the plane of a 2-D mesh; move it within its plane, turn it about " + to_text(normal, 3));
 }
 
 }  // namespace
@@ -205,7 +203,7 @@ std::vector<Vec3> evaluate(BoundaryRequests const& boundary, BoundaryMotion cons
     motion.displacement(requests[begin].rule, points, u);
     for (std::size_t n = begin; n < end; ++n) {
       std::int32_t const r = requests[n].rotation;
-      evaluation.take(n, r < 0 ? u[n - begin] : transpose(rotations[std::size_t(r)]) * u[n - begin]);
+      evaluation.take(n, r < 0 ? u[n - begin] : transpose(rotations[r]) * u[n - begin]);
     }
   }
   auto out = evaluation.result();
@@ -223,7 +221,7 @@ void require_equal_copies(BoundaryRequests const& boundary, BoundaryMotion const
   std::vector<Request const*> first(displacement.size(), nullptr);
   std::unordered_map<Index, Index> asked;
   for (Request const& r : boundary.requests) {
-    if (Request const*& own = first[std::size_t(r.boundary_node)]; own == nullptr) own = &r;
+    if (Request const*& own = first[r.boundary_node]; own == nullptr) own = &r;
     asked[r.node] = r.boundary_node;
   }
   TornCopies torn;
@@ -235,11 +233,11 @@ void require_equal_copies(BoundaryRequests const& boundary, BoundaryMotion const
     for (auto const& [node, donor] : pairs) {
       auto const own = asked.find(node), other = asked.find(donor);
       if (own == asked.end() || other == asked.end()) continue;
-      Request const &a = *first[std::size_t(own->second)], &b = *first[std::size_t(other->second)];
-      Vec3 const u = displacement[std::size_t(own->second)];
-      Vec3 const copy = transpose(turn) * displacement[std::size_t(other->second)];
+      Request const &a = *first[own->second], &b = *first[other->second];
+      Vec3 const u = displacement[own->second];
+      Vec3 const copy = transpose(turn) * displacement[other->second];
       if (a.rule != b.rule || distance(u, copy) <= tolerance) continue;
-      MotionRule const& rule = resolved.rules[std::size_t(a.rule)];
+      MotionRule const& rule = resolved.rules[a.rule];
       torn.add(rule.where, std::string(rule_name(rule.rule)), requester(boundary, a),
                {own->first, other->first, u, copy, norm(rotation_vector(turn))});
     }

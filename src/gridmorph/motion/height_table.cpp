@@ -14,7 +14,7 @@ HeightTable::HeightTable(std::vector<Station> stations, SpanwiseTable::Interpola
   auto const place = [](Station const& s) { return std::tuple(s.span, s.chord); };
   std::sort(stations.begin(), stations.end(), [&](Station const& a, Station const& b) { return place(a) < place(b); });
   for (int k = 0; k < (has_sides_ ? 2 : 1); ++k) {
-    auto& rows = rows_[std::size_t(k)];
+    auto& rows = rows_[k];
     for (Station const& s : stations) {
       if (has_sides_ && s.side != 0 && (s.side > 0) != (k == 1)) continue;
       if (rows.empty() || rows.back().first != s.span) rows.push_back({s.span, {{}, interpolation}});

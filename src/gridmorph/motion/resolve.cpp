@@ -177,8 +177,8 @@ class Resolver {
   }
 
   void claim_interface(int i, int r) {
-    std::string const name = "interface " + boundary_.describe_interface(connections_[std::size_t(i)]);
-    if (!connections_[std::size_t(i)].periodic) {
+    std::string const name = "interface " + boundary_.describe_interface(connections_[i]);
+    if (!connections_[i].periodic) {
       problems_.add(label(r) + " names the plain " + name +
                     ", which is inside the domain and moves with the volume; "
                     "name patches or periodic interfaces");
@@ -199,7 +199,7 @@ class Resolver {
     // The file stores the connection once per side: both sides are one interface to the user.
     if (int const partner = boundary_.other_side(i); partner >= 0)
       claim_one(interface_claim_[partner], r,
-                "periodic interface " + boundary_.describe_interface(connections_[std::size_t(partner)]));
+                "periodic interface " + boundary_.describe_interface(connections_[partner]));
   }
 
   void claim_one(int& claim, int r, std::string name) {
@@ -308,7 +308,7 @@ class Resolver {
     std::map<int, std::set<std::string>> unfit;
     for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       if (boundary_.patches()[p].kind != PatchKind::region) continue;
-      Rule const& rule = result_.rules[std::size_t(result_.patch[p].rule)].rule;
+      Rule const& rule = result_.rules[result_.patch[p].rule].rule;
       if (!is<FixedRule>(rule) && !is<RigidRule>(rule) && !is<FunctionRule>(rule) && !is<AttachedRule>(rule) &&
           !is<WakeRule>(rule) && !is<ShockRule>(rule) && !is<PrescribedRule>(rule))
         unfit[result_.patch[p].rule].insert(boundary_.patches()[p].name);

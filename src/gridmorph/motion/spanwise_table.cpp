@@ -37,7 +37,7 @@ double SpanwiseTable::at(double span) const {
   if (span <= stations.front().first || stations.size() < 2) return stations.front().second;
   if (span >= stations.back().first) return stations.back().second;
   std::size_t const n = std::size_t(piece_at(
-      int(stations.size()), [&](int k) { return stations[std::size_t(k)].first; }, span));
+      int(stations.size()), [&](int k) { return stations[k].first; }, span));
   auto const [from, a] = stations[n];
   auto const [to, b] = stations[n + 1];
   double const width = to - from, t = (span - from) / width;

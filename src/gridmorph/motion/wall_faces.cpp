@@ -40,9 +40,9 @@ std::optional<WallFaces::Place> WallFaces::nearest_within(Vec3 const& point, dou
 }
 
 WallFaces::Place WallFaces::place(TargetTree::Hit const& hit) const {
-  auto const& corners = tree_.triangles()[std::size_t(hit.triangle)];
-  auto const x = [&](int c) { return tree_.points()[std::size_t(corners[std::size_t(c)])]; };
-  auto const u = [&](int c) { return of_node_[std::size_t(corners[std::size_t(c)])]; };
+  auto const& corners = tree_.triangles()[hit.triangle];
+  auto const x = [&](int c) { return tree_.points()[corners[c]]; };
+  auto const u = [&](int c) { return of_node_[corners[c]]; };
   auto const weight = barycentric(hit.point, x(0), x(1), x(2));
   return {hit.point, u(0) + weight[1] * (u(1) - u(0)) + weight[2] * (u(2) - u(0))};
 }

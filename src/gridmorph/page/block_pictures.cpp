@@ -89,7 +89,7 @@ class BlockPictures final : public PictureMesh {
 
   void faces(Index cell, CellFaces& out) const override {
     auto const [z, c] = place(cell);
-    Zone const& zone = mesh().zones[std::size_t(z)];
+    Zone const& zone = mesh().zones[z];
     out.node.clear();
     out.first.assign(1, 0);
     for (int axis = 0; axis < 3; ++axis)
@@ -97,9 +97,9 @@ class BlockPictures final : public PictureMesh {
         constexpr std::array<std::array<int, 2>, 4> around{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
         for (auto const& [a, b] : around) {
           Index3 p = c;
-          p[std::size_t(axis)] += side;
-          p[std::size_t((axis + 1) % 3)] += a;
-          p[std::size_t((axis + 2) % 3)] += b;
+          p[axis] += side;
+          p[(axis + 1) % 3] += a;
+          p[(axis + 2) % 3] += b;
           out.node.push_back(number(zone, p));
         }
         out.first.push_back(out.node.size());
@@ -108,7 +108,7 @@ class BlockPictures final : public PictureMesh {
 
   std::vector<Index> around(Index cell) const override {
     auto const [z, c] = place(cell);
-    Zone const& zone = mesh().zones[std::size_t(z)];
+    Zone const& zone = mesh().zones[z];
     std::vector<Index> out;
     for (int k = std::max(0, c[2] - 1); k <= std::min(zone.extent[2] - 2, c[2] + 1); ++k)
       for (int j = std::max(0, c[1] - 1); j <= std::min(zone.extent[1] - 2, c[1] + 1); ++j)
@@ -119,20 +119,20 @@ class BlockPictures final : public PictureMesh {
 
   kernels::CellMeasures measures(Index cell, Coordinates const& at) const override {
     auto const [z, c] = place(cell);
-    Zone const& zone = mesh().zones[std::size_t(z)];
+    Zone const& zone = mesh().zones[z];
     kernels::HexCell hex;
     for (int n = 0; n < 8; ++n) hex.corner[n] = at[zone.node({c[0] + (n & 1), c[1] + (n >> 1 & 1), c[2] + (n >> 2)})];
-    return kernels::cell_measures(hex, handedness_[std::size_t(z)]);
+    return kernels::cell_measures(hex, handedness_[z]);
   }
 
   CellName name(Index cell) const override {
     auto const [z, c] = place(cell);
-    return {mesh().zones[std::size_t(z)].name, {c[0] + 1, c[1] + 1, c[2] + 1}};
+    return {mesh().zones[z].name, {c[0] + 1, c[1] + 1, c[2] + 1}};
   }
 
   Index number_of(int zone, Index3 const& cell) const override {
-    Index3 const& e = mesh().zones[std::size_t(zone)].extent;
-    return first_[std::size_t(zone)] + cell[0] + Index(e[0] - 1) * (cell[1] + Index(e[1] - 1) * cell[2]);
+    Index3 const& e = mesh().zones[zone].extent;
+    return first_[zone] + cell[0] + Index(e[0] - 1) * (cell[1] + Index(e[1] - 1) * cell[2]);
   }
 
  private:
@@ -147,7 +147,7 @@ class BlockPictures final : public PictureMesh {
 
   /// Its axis and side in the zone; -1 where it lies on no face.
   [[nodiscard]] std::pair<int, int> face_of(Patch const& patch) const {
-    Zone const& zone = mesh().zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh().zones[patch.zone];
     for (int axis = 0; axis < 3; ++axis) {
       auto const a = std::size_t(axis);
       if (patch.range.extent(axis) != 1) continue;
@@ -158,12 +158,12 @@ class BlockPictures final : public PictureMesh {
   }
 
   void add_patch(int p, std::vector<Facet>& out) const {
-    Patch const& patch = mesh().patches[std::size_t(p)];
+    Patch const& patch = mesh().patches[p];
     auto const [axis, side] = face_of(patch);
     if (axis < 0 || patch.kind == PatchKind::region) return;
-    Zone const& zone = mesh().zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh().zones[patch.zone];
     auto const u = std::size_t((axis + 1) % 3), v = std::size_t((axis + 2) % 3);
-    bool const turned = (side == 1) != (handedness_[std::size_t(patch.zone)] < 0);
+    bool const turned = (side == 1) != (handedness_[patch.zone] < 0);
     for (int b = patch.range.begin[v]; b + 1 < patch.range.end[v]; ++b)
       for (int a = patch.range.begin[u]; a + 1 < patch.range.end[u]; ++a) {
         auto const node = [&](int da, int db) {
@@ -179,10 +179,10 @@ class BlockPictures final : public PictureMesh {
   }
 
   void add_sides(int p, std::vector<Edge>& out) const {
-    Patch const& patch = mesh().patches[std::size_t(p)];
+    Patch const& patch = mesh().patches[p];
     auto const [axis, side] = face_of(patch);
     if (axis < 0 || axis == 2 || patch.range.extent(1 - axis) < 2 || patch.range.begin[2] != 0) return;
-    Zone const& zone = mesh().zones[std::size_t(patch.zone)];
+    Zone const& zone = mesh().zones[patch.zone];
     auto const along = std::size_t(1 - axis);
     for (int a = patch.range.begin[along]; a + 1 < patch.range.end[along]; ++a) {
       Index3 q = patch.range.begin, r = q;

@@ -26,7 +26,7 @@ class ElementPictures final : public PictureMesh {
     for (Index f = 0; f < topology_.boundary.size(); ++f) {
       auto const face = topology_.boundary.nodes[f];
       std::vector<Index32> const inwards(face.rbegin(), face.rend());
-      add(inwards, face_patches_.patch[std::size_t(f)], out);
+      add(inwards, face_patches_.patch[f], out);
     }
     return out;
   }
@@ -39,7 +39,7 @@ class ElementPictures final : public PictureMesh {
     }
     for (Index f = 0; f < topology_.boundary.size(); ++f)
       if (auto const side = topology_.boundary.nodes[f]; side.size() == 2)
-        out.sides.push_back({{side[0], side[1]}, face_patches_.patch[std::size_t(f)]});
+        out.sides.push_back({{side[0], side[1]}, face_patches_.patch[f]});
     return out;
   }
 
@@ -47,8 +47,7 @@ class ElementPictures final : public PictureMesh {
     std::vector<Index> out;
     for (Index e = 0; e < n_cells(); ++e) {
       auto const corners = mesh().elements.corners(e);
-      auto const below =
-          std::count_if(corners.begin(), corners.end(), [&](Index32 n) { return level[std::size_t(n)] < 0; });
+      auto const below = std::count_if(corners.begin(), corners.end(), [&](Index32 n) { return level[n] < 0; });
       if (below != 0 && below != std::ptrdiff_t(corners.size())) out.push_back(e);
     }
     return out;
@@ -77,16 +76,16 @@ class ElementPictures final : public PictureMesh {
 
   kernels::CellMeasures measures(Index cell, Coordinates const& at) const override {
     CoordinateViews<Kokkos::HostSpace> const points{at.x, at.y, at.z};
-    return tables_.measures(points, cell, signs_[std::size_t(cell)]);
+    return tables_.measures(points, cell, signs_[cell]);
   }
 
   CellName name(Index cell) const override {
     int const zone = mesh().zone_of_element(cell);
-    return {mesh().zones[std::size_t(zone)].name, {number_in_file(mesh(), cell)}};
+    return {mesh().zones[zone].name, {number_in_file(mesh(), cell)}};
   }
 
   Index number_of(int zone, Index3 const& cell) const override {
-    Zone const& z = mesh().zones[std::size_t(zone)];
+    Zone const& z = mesh().zones[zone];
     for (Index e = z.first_element; e < z.first_element + z.n_elements; ++e)
       if (number_in_file(mesh(), e) == cell[0] + 1) return e;
     return -1;

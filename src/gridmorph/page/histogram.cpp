@@ -62,7 +62,7 @@ double height_of(Index count, double most) {
 /// 1, 10, 100, 1 k, ...
 std::string count_text(int power) {
   constexpr std::array names{"1", "10", "100", "1k", "10k", "100k", "1M", "10M", "100M", "1G"};
-  return names[std::size_t(std::clamp(power, 0, 9))];
+  return names[std::clamp(power, 0, 9)];
 }
 
 }  // namespace

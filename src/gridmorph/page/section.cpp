@@ -12,7 +12,7 @@ namespace {
 bool crosses(double a, double b) { return (a < 0) != (b < 0); }
 
 Flat crossing(Cut const& cut, Coordinates const& at, std::vector<double> const& level, Index32 a, Index32 b) {
-  double const t = level[std::size_t(a)] / (level[std::size_t(a)] - level[std::size_t(b)]);
+  double const t = level[a] / (level[a] - level[b]);
   return cut.flat(at[a] + t * (at[b] - at[a]));
 }
 
@@ -50,8 +50,8 @@ Section plane_section(PictureMesh const& mesh, Coordinates const& at, Cut const&
     add_polygon(out, plane.cell[f], points);
   }
   for (Edge const& side : plane.sides)
-    if (side.patch >= 0 && walls[std::size_t(side.patch)] >= 0)
-      out.walls.push_back({cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[std::size_t(side.patch)] > 0});
+    if (side.patch >= 0 && walls[side.patch] >= 0)
+      out.walls.push_back({cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[side.patch] > 0});
   return out;
 }
 
@@ -62,7 +62,7 @@ Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Co
   if (!cut.levels) return plane_section(mesh, at, cut, walls);
   Section out;
   out.first.push_back(0);
-  std::vector<double> level(std::size_t(at.size()));
+  std::vector<double> level(at.size());
   cut.levels(at, level);
   CellFaces faces;
   std::vector<Flat> points;
@@ -75,7 +75,7 @@ Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Co
       auto const face = faces[f];
       Index32 a = face.back();
       for (Index32 const b : face) {
-        if (crosses(level[std::size_t(a)], level[std::size_t(b)])) edges.push_back(std::minmax(a, b));
+        if (crosses(level[a], level[b])) edges.push_back(std::minmax(a, b));
         a = b;
       }
     }
@@ -91,14 +91,14 @@ Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Co
     add_polygon(out, cell, points);
   }
   for (Facet const& facet : boundary) {
-    if (facet.patch < 0 || walls[std::size_t(facet.patch)] < 0) continue;
+    if (facet.patch < 0 || walls[facet.patch] < 0) continue;
     points.clear();
     for (std::size_t c = 0; c < facet.size(); ++c) {
       Index32 const a = facet.node[c], b = facet.node[(c + 1) % facet.size()];
-      if (crosses(level[std::size_t(a)], level[std::size_t(b)])) points.push_back(crossing(cut, at, level, a, b));
+      if (crosses(level[a], level[b])) points.push_back(crossing(cut, at, level, a, b));
     }
     if (points.size() == 2 && !wraps(points, cut.period))
-      out.walls.push_back({points[0], points[1], walls[std::size_t(facet.patch)] > 0});
+      out.walls.push_back({points[0], points[1], walls[facet.patch] > 0});
   }
   return out;
 }

@@ -89,7 +89,7 @@ std::string sequence_part(ReportPage const& page) {
     for (std::size_t n = 0; n < page.steps.size(); ++n)
       if (page.steps[n].step == int(worst) + 1) shown = n;
     out += fmt::format("<div class=\"steps\" data-shown=\"{}\">\n", shown);
-    for (StepFigure const& f : page.steps) out += figure(f.body, step_caption(steps[std::size_t(f.step - 1)]));
+    for (StepFigure const& f : page.steps) out += figure(f.body, step_caption(steps[f.step - 1]));
     out += "</div>\n" + scale_of_displacement(page.scale_end);
     if (page.steps.size() < steps.size())
       out += fmt::format("<p class=\"dim\">{} of {} steps are shown, the worst one among them.</p>\n",

@@ -18,7 +18,7 @@ Vec3 unit_vector(Vec3 const& v) {
 
 /// Twice the area, as a vector along the normal.
 Vec3 area_of(Facet const& f, std::vector<Vec3> const& at) {
-  auto const p = [&](std::size_t n) { return at[std::size_t(f.node[n])]; };
+  auto const p = [&](std::size_t n) { return at[f.node[n]]; };
   return f.size() == 3 ? cross(p(1) - p(0), p(2) - p(0)) : cross(p(2) - p(0), p(3) - p(1));
 }
 
@@ -89,16 +89,15 @@ std::vector<Edge> rims_of(Surface const& surface, std::vector<signed char> const
   std::map<Cell, Index32> places;  // in order, so that pictures are the same in every run
   std::vector<Index32> place(surface.nodes.size(), -1);
   auto const place_of = [&](Index32 n) {
-    if (place[std::size_t(n)] < 0) {
-      Vec3 const d = (1 / step) * (surface.baseline[std::size_t(n)] - surface.baseline.front());
-      place[std::size_t(n)] =
-          places.emplace(Cell{std::llround(d.x), std::llround(d.y), std::llround(d.z)}, n).first->second;
+    if (place[n] < 0) {
+      Vec3 const d = (1 / step) * (surface.baseline[n] - surface.baseline.front());
+      place[n] = places.emplace(Cell{std::llround(d.x), std::llround(d.y), std::llround(d.z)}, n).first->second;
     }
-    return place[std::size_t(n)];
+    return place[n];
   };
   std::map<std::array<Index32, 2>, int> times;
   for (Facet const& facet : surface.facets) {
-    if (role[std::size_t(facet.patch)] < 1) continue;
+    if (role[facet.patch] < 1) continue;
     for (std::size_t c = 0; c < facet.size(); ++c) {
       Index32 const a = place_of(facet.node[c]), b = place_of(facet.node[(c + 1) % facet.size()]);
       if (a != b) ++times[{std::min(a, b), std::max(a, b)}];
@@ -117,10 +116,10 @@ Surface make_surface(std::vector<Facet> const& facets, std::vector<signed char> 
   Surface out;
   SurfaceNumbers number(out, baseline);
   for (Facet facet : facets) {
-    if (facet.patch < 0 || role[std::size_t(facet.patch)] < 0) continue;
+    if (facet.patch < 0 || role[facet.patch] < 0) continue;
     for (std::size_t c = 0; c < facet.size(); ++c) {
       facet.node[c] = number(facet.node[c]);
-      if (role[std::size_t(facet.patch)] > 0) out.focus[std::size_t(facet.node[c])] = 1;
+      if (role[facet.patch] > 0) out.focus[facet.node[c]] = 1;
     }
     out.facets.push_back(facet);
   }
@@ -137,10 +136,10 @@ Surface make_surface(PictureMesh::Plane const& plane, std::vector<signed char> c
     out.facets.push_back(facet);
   }
   for (Edge side : plane.sides) {
-    if (side.patch < 0 || role[std::size_t(side.patch)] < 0) continue;
+    if (side.patch < 0 || role[side.patch] < 0) continue;
     for (Index32& n : side.node) {
       n = number(n);
-      if (role[std::size_t(side.patch)] > 0) out.focus[std::size_t(n)] = 1;
+      if (role[side.patch] > 0) out.focus[n] = 1;
     }
     out.rims.push_back(side);
   }
@@ -179,7 +178,7 @@ std::array<View, 2> find_views(Surface const& surface, std::vector<Vec3> const& 
   for (Facet const& f : surface.facets) {
     Vec3 const area = area_of(f, surface.baseline);
     double moved = 0;
-    for (std::size_t c = 0; c < f.size(); ++c) moved = std::max(moved, norm(displacement[std::size_t(f.node[c])]));
+    for (std::size_t c = 0; c < f.size(); ++c) moved = std::max(moved, norm(displacement[f.node[c]]));
     for (std::size_t d = 0; d < directions.size(); ++d) seen[d] += moved * std::max(0.0, dot(area, directions[d]));
   }
   auto const better = [&](std::size_t a, std::size_t b) { return seen[a] > seen[b] * (1 + 1e-9); };
@@ -232,7 +231,7 @@ io::Picture surface_picture(Surface const& surface, std::vector<Vec3> const& dis
   auto const raised = [](Place const& p) { return Place{p.x, p.y, p.z + 0.75}; };
   for (Facet const* f : front) {
     double shortest = std::numeric_limits<double>::max();
-    auto const corner = [&](std::size_t c) { return at[std::size_t(f->node[c % f->size()])]; };
+    auto const corner = [&](std::size_t c) { return at[f->node[c % f->size()]]; };
     for (std::size_t c = 0; c < f->size(); ++c) {
       Place const a = corner(c), b = corner(c + 1);
       double const pixels = std::hypot(a.x - b.x, a.y - b.y);
@@ -244,8 +243,8 @@ io::Picture surface_picture(Surface const& surface, std::vector<Vec3> const& dis
       canvas.line(raised(corner(c)), raised(corner(c + 1)), {0x18, 0x1c, 0x22, opacity}, 0.5, false);
   }
   for (Edge const& rim : surface.rims) {
-    Place const a = project(surface.baseline[std::size_t(rim.node[0])]);
-    Place const b = project(surface.baseline[std::size_t(rim.node[1])]);
+    Place const a = project(surface.baseline[rim.node[0]]);
+    Place const b = project(surface.baseline[rim.node[1]]);
     canvas.line(raised(a), raised(b), {0x2b, 0x6c, 0xd4, 0.9}, 1.5);
   }
   return canvas.picture();

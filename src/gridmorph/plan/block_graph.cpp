@@ -27,12 +27,12 @@ Index cell_faces_of(IndexRange const& nodes) {
 BlockGraph::Block node_of(Mesh const& mesh, Topology const& topology, int block) {
   auto const& placed = topology.blocks[block].pieces;
   auto const& pieces = topology.lattice.pieces();
-  Piece const& first = pieces[std::size_t(placed.front().piece)];
+  Piece const& first = pieces[placed.front().piece];
   BlockGraph::Block out;
-  out.name = mesh.zones[std::size_t(first.zone)].name + " " + to_string(first.nodes);
+  out.name = mesh.zones[first.zone].name + " " + to_string(first.nodes);
   std::set<int> zones;
   for (PlacedPiece const& p : placed) {
-    Piece const& piece = pieces[std::size_t(p.piece)];
+    Piece const& piece = pieces[p.piece];
     zones.insert(piece.zone);
     out.cells += cells_of(piece.nodes);
   }
@@ -57,15 +57,14 @@ BlockGraph block_graph(PreparedMorph const& prepared) {
           int const c = lattice.class_of(entity);
           auto const sides = lattice.face_sides(c);
           if (sides.size() != 2) {
-            if (int const p = topology.blocks.patch_of_face()[std::size_t(c)]; p >= 0)
-              patches.insert(mesh.patches[std::size_t(p)].families.empty()
-                                 ? mesh.patches[std::size_t(p)].name
-                                 : mesh.patches[std::size_t(p)].families.front());
+            if (int const p = topology.blocks.patch_of_face()[c]; p >= 0)
+              patches.insert(mesh.patches[p].families.empty() ? mesh.patches[p].name
+                                                              : mesh.patches[p].families.front());
             continue;
           }
           int const one = topology.blocks.block_of(sides[0].piece), two = topology.blocks.block_of(sides[1].piece);
-          int const i = topology.blocks.interface_of_face()[std::size_t(c)];
-          bool const periodic = i >= 0 && mesh.interfaces[std::size_t(i)].periodic.has_value();
+          int const i = topology.blocks.interface_of_face()[c];
+          bool const periodic = i >= 0 && mesh.interfaces[i].periodic.has_value();
           if (topology.blocks.face_of(sides[0]) != BlockFace{b, axis, side})
             continue;  // it comes from its other side too
           faces[{std::min(one, two), std::max(one, two), periodic}] += cell_faces_of(closed_nodes(lattice, entity));
@@ -80,7 +79,7 @@ BlockGraph block_graph(PreparedMorph const& prepared) {
     if (stage.paths.empty()) continue;  // poles
     out.stages.push_back(names[s + 1].name);
     for (std::size_t n = 0; n < stage.paths.size(); ++n) {
-      for (int const b : stage.paths[n].blocks) out.blocks[std::size_t(b)].chain = int(out.chains.size());
+      for (int const b : stage.paths[n].blocks) out.blocks[b].chain = int(out.chains.size());
       out.chains.push_back({int(out.stages.size()) - 1, int(n) + 1, stage.paths[n].blocks, stage.paths[n].ends,
                             n < stage.description.size() ? stage.description[n] : std::string()});
     }

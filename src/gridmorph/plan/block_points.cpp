@@ -36,16 +36,16 @@ BlockPoints::BlockPoints(PreparedMorph const& prepared)
 }
 
 void BlockPoints::gather(Plan const& plan) {
-  first_.assign(std::size_t(plan.n_slots) + 1, 0);
+  first_.assign(plan.n_slots + 1, 0);
   for_each_skeleton_node(plan, [&](Index slot, Index node, std::int32_t) {
-    ++first_[std::size_t(slot) + 1];
-    slot_[std::size_t(node)] = Index32(slot);
+    ++first_[slot + 1];
+    slot_[node] = Index32(slot);
   });
   for (std::size_t s = 1; s < first_.size(); ++s) first_[s] += first_[s - 1];
-  nodes_.resize(std::size_t(first_.back()));
+  nodes_.resize(first_.back());
   std::vector<Index> next(first_.begin(), first_.end() - 1);
   for_each_skeleton_node(plan, [&](Index slot, Index node, std::int32_t matrix) {
-    nodes_[std::size_t(next[std::size_t(slot)]++)] = {node, matrix};
+    nodes_[next[slot]++] = {node, matrix};
   });
 }
 
@@ -56,9 +56,9 @@ void BlockPoints::keep_given(PreparedMorph const& prepared) {
   Plan const& plan = prepared.plan();
   std::vector<std::uint8_t> asked(plan.boundary_nodes.size(), 0), given(plan.boundary_nodes.size(), 0);
   for (BoundaryRequests::Request const& request : prepared.planned.boundary.requests) {
-    Rule const& rule = prepared.surface.motion().rules[std::size_t(request.rule)].rule;
+    Rule const& rule = prepared.surface.motion().rules[request.rule].rule;
     bool const follows = request.interface >= 0 && std::holds_alternative<FollowRule>(rule);
-    (follows ? asked : given)[std::size_t(request.boundary_node)] = 1;
+    (follows ? asked : given)[request.boundary_node] = 1;
   }
   for (std::size_t n = 0; n < plan.boundary_nodes.size(); ++n)
     if (asked[n] == 0 || given[n] != 0) keep(plan.boundary_nodes[n]);
@@ -66,7 +66,7 @@ void BlockPoints::keep_given(PreparedMorph const& prepared) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     Patch const& patch = mesh.patches[p];
     if (prepared.surface.slip_surface_of(int(p)) < 0)
-      gridmorph::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index node) { keep(node); });
+      gridmorph::for_each_node(mesh.zones[patch.zone], patch.range, [&](Index node) { keep(node); });
   }
 }
 
@@ -74,7 +74,7 @@ void BlockPoints::keep_near_field(PreparedMorph const& prepared) {
   for (CellBox const& box : prepared.plan().near_field) {
     IndexRange nodes = box.cells;
     for (int& end : nodes.end) ++end;
-    gridmorph::for_each_node(prepared.mesh.zones[std::size_t(box.zone)], nodes, [&](Index node) { keep(node); });
+    gridmorph::for_each_node(prepared.mesh.zones[box.zone], nodes, [&](Index node) { keep(node); });
   }
 }
 
@@ -95,7 +95,7 @@ void BlockPoints::find_slip(PreparedMorph const& prepared) {
     int const surface = prepared.surface.slip_surface_of(int(p));
     Patch const& patch = mesh.patches[p];
     if (surface >= 0)
-      gridmorph::for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range,
+      gridmorph::for_each_node(mesh.zones[patch.zone], patch.range,
                                [&](Index node) { slips_.emplace_back(node, surface); });
   }
   std::sort(slips_.begin(), slips_.end());
@@ -134,7 +134,7 @@ std::optional<SlidingPoint> BlockPoints::sliding(std::vector<PointNode> const& n
   Vec3 const at = baseline_[frame.node];
   for (std::size_t m = 0; m < all.size(); ++m) {
     out.surface[m] = all[m];
-    out.own_offset[m] = (*slip_surfaces_)[std::size_t(all[m])].view().own_offset(at);
+    out.own_offset[m] = (*slip_surfaces_)[all[m]].view().own_offset(at);
   }
   return out;
 }

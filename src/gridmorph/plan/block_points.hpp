@@ -38,22 +38,22 @@ class BlockPoints {
   explicit BlockPoints(PreparedMorph const& prepared);
 
   /// Whether a node, and with it all of its point, keeps its place.
-  [[nodiscard]] bool stays(Index node) const { return stays_[std::size_t(node)] != 0; }
+  [[nodiscard]] bool stays(Index node) const { return stays_[node] != 0; }
   void keep(Index node) {
-    for_each_node(node, [this](PointNode const& n) { stays_[std::size_t(n.node)] = 1; });
+    for_each_node(node, [this](PointNode const& n) { stays_[n.node] = 1; });
   }
   /// All nodes of a node's point.
   template <class Visit>
   void for_each_node(Index node, Visit&& visit) const {
-    Index32 const slot = slot_[std::size_t(node)];
+    Index32 const slot = slot_[node];
     if (slot < 0) {
       visit(PointNode{node, -1});
       return;
     }
-    for (Index n = first_[std::size_t(slot)]; n < first_[std::size_t(slot) + 1]; ++n) visit(nodes_[std::size_t(n)]);
+    for (Index n = first_[slot]; n < first_[slot + 1]; ++n) visit(nodes_[n]);
   }
   /// Where the plan keeps a node's displacement; -1 inside pieces.
-  [[nodiscard]] Index slot(Index node) const { return slot_[std::size_t(node)]; }
+  [[nodiscard]] Index slot(Index node) const { return slot_[node]; }
   /// Numbers of the slip surfaces that the patches of a node lie on.
   [[nodiscard]] std::vector<int> surfaces(Index node) const;
   /// nodes: all those of a point. In the frame of the node with most surfaces; nothing where another node of the point
@@ -62,7 +62,7 @@ class BlockPoints {
 
   /// BoundaryMotion::slip_surfaces().
   [[nodiscard]] std::vector<SlipSurface> const& slip_surfaces() const { return *slip_surfaces_; }
-  [[nodiscard]] Mat3 const& rotation(std::int32_t matrix) const { return (*rotations_)[std::size_t(matrix)]; }
+  [[nodiscard]] Mat3 const& rotation(std::int32_t matrix) const { return (*rotations_)[matrix]; }
   [[nodiscard]] Coordinates const& baseline() const { return baseline_; }
 
  private:

@@ -21,14 +21,13 @@ BoundaryGroups::BoundaryGroups(Coordinates const& x, std::vector<Index32> const&
     : x_(x), nodes_(nodes), area_(area), leaf_radius_(leaf_radius), along_(along), order_(nodes.size()) {
   std::iota(order_.begin(), order_.end(), Index32(0));
   PlaceOrder const is_before(x, along == Along::coordinates ? 1.13e-3 : 1.13e-6);
-  std::sort(order_.begin(), order_.end(),
-            [&](Index32 a, Index32 b) { return is_before(nodes_[std::size_t(a)], nodes_[std::size_t(b)]); });
+  std::sort(order_.begin(), order_.end(), [&](Index32 a, Index32 b) { return is_before(nodes_[a], nodes_[b]); });
   step_ = is_before.step();
   place_.resize(order_.size());
   steps_.resize(order_.size());
   key_.resize(order_.size());
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    place_[std::size_t(order_[k])] = Index32(k);
+    place_[order_[k]] = Index32(k);
     steps_[k] = is_before.steps(x[nodes[k]]);
   }
   if (!nodes.empty()) make(0, Index32(nodes.size()));
@@ -60,9 +59,9 @@ Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
     Index32 const middle = halve(group, box.high - box.low);
     group.part[0] = make(begin, middle);
     group.part[1] = make(middle, end);
-    group.height = 1 + std::max(groups[std::size_t(group.part[0])].height, groups[std::size_t(group.part[1])].height);
+    group.height = 1 + std::max(groups[group.part[0]].height, groups[group.part[1]].height);
   }
-  groups[std::size_t(g)] = group;
+  groups[g] = group;
   return g;
 }
 
@@ -70,10 +69,10 @@ double BoundaryGroups::distance(Vec3 const& x) const {
   double nearest = std::numeric_limits<double>::infinity();
   if (groups.empty()) return nearest;
   std::vector<Index32> open{0};
-  auto const from = [&](Index32 g) { return gridmorph::distance(x, groups[std::size_t(g)].centre); };
+  auto const from = [&](Index32 g) { return gridmorph::distance(x, groups[g].centre); };
   while (!open.empty()) {
     Index32 const g = open.back();
-    Group const& group = groups[std::size_t(g)];
+    Group const& group = groups[g];
     open.pop_back();
     if (from(g) - group.radius > nearest) continue;
     if (group.part[0] < 0) {
@@ -117,25 +116,23 @@ Index32 BoundaryGroups::halve(Group const& group, Vec3 const& extent) {
   Vec3 const across = along_ == Along::principal_axes ? longest_axis(group) : Vec3{};
   bool const is_turned = norm(across) > 0;
   for (Index32 k = group.begin; k < group.end; ++k) {
-    auto const n = std::size_t(order_[std::size_t(k)]);
+    auto const n = std::size_t(order_[k]);
     key_[n] = is_turned ? std::int64_t(std::floor(dot(x_[nodes_[n]] - group.centre, across) / step_ + 0.3819))
                         : steps_[n][axis];
   }
   Index32 middle = (group.begin + group.end) / 2;
   std::nth_element(order_.begin() + group.begin, order_.begin() + middle, order_.begin() + group.end,
                    [&](Index32 a, Index32 b) {
-                     auto const s = key_[std::size_t(a)], t = key_[std::size_t(b)];
-                     return s < t || (s == t && place_[std::size_t(a)] < place_[std::size_t(b)]);
+                     auto const s = key_[a], t = key_[b];
+                     return s < t || (s == t && place_[a] < place_[b]);
                    });
   if (!is_turned) return middle;
   // Those with the median's key to one side of it, the one that leaves halves more alike, where both have nodes.
-  auto const median = key_[std::size_t(order_[std::size_t(middle)])];
+  auto const median = key_[order_[middle]];
   auto const begin = order_.begin() + group.begin, end = order_.begin() + group.end;
-  auto const below =
-      Index32(std::partition(begin, end, [&](Index32 n) { return key_[std::size_t(n)] < median; }) - order_.begin());
-  auto const upto =
-      Index32(std::partition(order_.begin() + below, end, [&](Index32 n) { return key_[std::size_t(n)] == median; }) -
-              order_.begin());
+  auto const below = Index32(std::partition(begin, end, [&](Index32 n) { return key_[n] < median; }) - order_.begin());
+  auto const upto = Index32(std::partition(order_.begin() + below, end, [&](Index32 n) { return key_[n] == median; }) -
+                            order_.begin());
   bool const lower = below > group.begin && (upto >= group.end || middle - below <= upto - middle);
   return lower ? below : upto < group.end ? upto : middle;
 }
@@ -144,11 +141,11 @@ void BoundaryGroups::add_rows(InterpolationOperator& leaves, LayerRows& rows) co
   std::vector<Index32> items;
   std::vector<double> weights;
   std::vector<std::vector<Index32>> by_height(std::size_t(groups.front().height) + 1);
-  for (std::size_t g = 0; g < groups.size(); ++g) by_height[std::size_t(groups[g].height)].push_back(Index32(g));
+  for (std::size_t g = 0; g < groups.size(); ++g) by_height[groups[g].height].push_back(Index32(g));
   for (Index32 const g : by_height[0]) {
     items.clear();
     weights.clear();
-    for (Index32 k = groups[std::size_t(g)].begin; k < groups[std::size_t(g)].end; ++k) {
+    for (Index32 k = groups[g].begin; k < groups[g].end; ++k) {
       items.push_back(item(k));
       weights.push_back(area(k));
     }
@@ -156,8 +153,8 @@ void BoundaryGroups::add_rows(InterpolationOperator& leaves, LayerRows& rows) co
   }
   for (std::size_t h = 1; h < by_height.size(); ++h) {
     for (Index32 const g : by_height[h]) {
-      Group const& group = groups[std::size_t(g)];
-      double const parts[2] = {groups[std::size_t(group.part[0])].area, groups[std::size_t(group.part[1])].area};
+      Group const& group = groups[g];
+      double const parts[2] = {groups[group.part[0]].area, groups[group.part[1]].area};
       rows.rows.add(g, group.part, parts);
     }
     rows.level.push_back(rows.rows.size());

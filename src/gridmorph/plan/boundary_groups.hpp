@@ -53,9 +53,9 @@ class BoundaryGroups {
   /// Brings the nodes of a group in an order, and returns where the second part begins. Along principal axes nodes that
   /// are equally far along them stay together, so that mirrored meshes have mirrored groups.
   Index32 halve(Group const& group, Vec3 const& extent);
-  [[nodiscard]] Index32 item(Index32 k) const { return order_[std::size_t(k)]; }
-  [[nodiscard]] Index32 node(Index32 k) const { return nodes_[std::size_t(order_[std::size_t(k)])]; }
-  [[nodiscard]] double area(Index32 k) const { return area_[std::size_t(order_[std::size_t(k)])]; }
+  [[nodiscard]] Index32 item(Index32 k) const { return order_[k]; }
+  [[nodiscard]] Index32 node(Index32 k) const { return nodes_[order_[k]]; }
+  [[nodiscard]] double area(Index32 k) const { return area_[order_[k]]; }
 
   Coordinates const& x_;
   std::vector<Index32> const& nodes_;

@@ -34,11 +34,11 @@ class StoreParameters {
       : lines_(lines), tube_(tube), a_(a), b_(b), t_(t) {}
 
   void operator()(int /*position*/, double t) const {
-    kernels::Segment const& segment = lines_.segments[std::size_t(tube_.first_segment + m_)];
+    kernels::Segment const& segment = lines_.segments[tube_.first_segment + m_];
     int const category = kernels::end_category(s_, segment.count) +
                          3 * (kernels::end_category(a_, tube_.n_a) + 3 * kernels::end_category(b_, tube_.n_b));
     if (int const number = segment.target[category]; number >= 0) {
-      kernels::ParameterTarget const& to = lines_.targets[std::size_t(number)];
+      kernels::ParameterTarget const& to = lines_.targets[number];
       t_[to.first + s_ * to.stride_s + a_ * to.stride_a + b_ * to.stride_b] = t;
     }
     if (++s_ == segment.count) {
@@ -60,7 +60,7 @@ void append_parameters(LineTables const& lines, GridLengths const& lengths, std:
   out.resize(first + std::size_t(lines.n_parameters), 0);
   auto const table = host_lines(lines);
   for (kernels::Tube const& tube : lines.tubes) {
-    if (!lines.chains[std::size_t(tube.chain)].has_parameters()) continue;
+    if (!lines.chains[tube.chain].has_parameters()) continue;
     for (int b = 0; b < tube.n_b; ++b)
       for (int a = 0; a < tube.n_a; ++a)
         kernels::walk_line(table, tube, a, b, lengths, StoreParameters(lines, tube, a, b, out.data() + first));
@@ -102,8 +102,8 @@ std::vector<Vec3> CoarsePlanner::displacement(Plan const& plan, std::span<Vec3 c
   std::vector<Vec3> out;
   for (Index const node : plan.boundary_nodes) {
     int const z = coarse_.mesh.zone_of(node);
-    Index3 const at = coarse_.fine_index(z, coarse_.mesh.zones[std::size_t(z)].index(node));
-    out.push_back(boundary[place.at(prepared_.mesh.zones[std::size_t(z)].node(at))]);
+    Index3 const at = coarse_.fine_index(z, coarse_.mesh.zones[z].index(node));
+    out.push_back(boundary[place.at(prepared_.mesh.zones[z].node(at))]);
   }
   return out;
 }

@@ -104,11 +104,11 @@ CommonMotion common_motion(std::vector<Vec3> position, std::vector<double> area,
   Forbidden forbidden;
   std::array<Vec3, 4> place{centre, centre, centre, centre};
   for (int i = 0; i < 3; ++i) {
-    double const moment = axes.moment[std::size_t(i)];
-    Vec3 const direction = axes.direction[std::size_t(i)];
+    double const moment = axes.moment[i];
+    Vec3 const direction = axes.direction[i];
     if (moment > flat * axes.moment[0]) {
       out.frame.axis[i] = (1 / std::sqrt(moment)) * direction;
-      place[std::size_t(i) + 1] = centre + std::sqrt(moment) * direction;
+      place[i + 1] = centre + std::sqrt(moment) * direction;
     } else {
       for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
         forbidden.add_function([&](kernels::CommonMap const& map) { return dot(e, map.a[i + 1]); });

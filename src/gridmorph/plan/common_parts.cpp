@@ -16,8 +16,8 @@ std::vector<std::vector<int>> parts_of_zones(Mesh const& mesh, Links const& link
   std::vector<int> const number = sets.set_numbers();
   std::vector<std::vector<int>> out;
   for (int z = 0; z < int(number.size()); ++z) {
-    out.resize(std::max(out.size(), std::size_t(number[std::size_t(z)]) + 1));
-    out[std::size_t(number[std::size_t(z)])].push_back(z);
+    out.resize(std::max(out.size(), std::size_t(number[z]) + 1));
+    out[number[z]].push_back(z);
   }
   return out;
 }
@@ -27,23 +27,23 @@ class PartBuilder {
  public:
   PartBuilder(Mesh const& mesh, std::vector<int> const& zones) : mesh_(mesh), has_(mesh.zones.size(), 0) {
     out_.zones = zones;
-    for (int const z : zones) has_[std::size_t(z)] = 1;
+    for (int const z : zones) has_[z] = 1;
   }
 
-  [[nodiscard]] bool has_zone(int zone) const { return has_[std::size_t(zone)] != 0; }
+  [[nodiscard]] bool has_zone(int zone) const { return has_[zone] != 0; }
   [[nodiscard]] bool has_node(Index node) const { return has_zone(mesh_.zone_of(node)); }
 
   void list(Plan const& plan) {
     for (std::size_t k = 0; k < plan.boundary_nodes.size(); ++k)
       if (has_node(plan.boundary_nodes[k])) out_.boundary.push_back(std::int32_t(k));
     // Copies of a slot come with that of its owner first.
-    std::vector<char> seen(std::size_t(plan.n_slots), 0);
+    std::vector<char> seen(plan.n_slots, 0);
     for (kernels::NodeCopy const& copy : plan.skeleton_nodes) {
       if (!has_node(copy.destination)) continue;
       for (Index q = 0; q < copy.n_q; ++q)
         for (Index p = 0; p < copy.n_p; ++p) {
           Index const slot = copy.source + p * copy.source_stride_p + q * copy.source_stride_q;
-          if (std::exchange(seen[std::size_t(slot)], 1) != 0) continue;
+          if (std::exchange(seen[slot], 1) != 0) continue;
           out_.slots.push_back(std::int32_t(slot));
           out_.position.push_back(
               mesh_.coordinates[copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q]);
@@ -54,12 +54,12 @@ class PartBuilder {
   template <class T>
   [[nodiscard]] std::vector<T> listed(std::span<T const> of_boundary) const {
     std::vector<T> out;
-    for (std::int32_t const k : out_.boundary) out.push_back(of_boundary[std::size_t(k)]);
+    for (std::int32_t const k : out_.boundary) out.push_back(of_boundary[k]);
     return out;
   }
   [[nodiscard]] std::vector<Vec3> positions(Plan const& plan) const {
     std::vector<Vec3> out;
-    for (std::int32_t const k : out_.boundary) out.push_back(mesh_.coordinates[plan.boundary_nodes[std::size_t(k)]]);
+    for (std::int32_t const k : out_.boundary) out.push_back(mesh_.coordinates[plan.boundary_nodes[k]]);
     return out;
   }
 
@@ -98,14 +98,14 @@ void each_share_of_area(Boundary const& boundary, int patch, Add const& add) {
 /// Shares of the boundary nodes in the area of what rules move; the mean for those of none, as on periodic sides.
 std::vector<double> areas(PreparedMorph const& prepared, PlannedMorph const& planned) {
   BoundaryMotion const& surface = prepared.surface;
-  std::vector<std::int32_t> number(std::size_t(prepared.mesh.n_nodes()), -1);
-  for (auto const& r : planned.boundary.requests) number[std::size_t(r.node)] = std::int32_t(r.boundary_node);
+  std::vector<std::int32_t> number(prepared.mesh.n_nodes(), -1);
+  for (auto const& r : planned.boundary.requests) number[r.node] = std::int32_t(r.boundary_node);
   std::vector<double> out(planned.plan.boundary_nodes.size(), 0);
   for (int p = 0; p < int(prepared.mesh.patches.size()); ++p) {
-    int const rule = surface.motion().patch[std::size_t(p)].rule;
+    int const rule = surface.motion().patch[p].rule;
     if (rule < 0 || !surface.is_explicit(rule)) continue;
     each_share_of_area(surface.boundary(), p, [&](Index node, double area) {
-      if (std::int32_t const k = number[std::size_t(node)]; k >= 0) out[std::size_t(k)] += area;
+      if (std::int32_t const k = number[node]; k >= 0) out[k] += area;
     });
   }
   double sum = 0;
@@ -123,7 +123,7 @@ std::vector<double> areas(PreparedMorph const& prepared, PlannedMorph const& pla
 std::optional<CommonLimits> limits_of(PreparedMorph const& prepared, PartBuilder const& part) {
   CommonLimits out;
   for (int p = 0; p < int(prepared.mesh.patches.size()); ++p) {
-    if (!part.has_zone(prepared.mesh.patches[std::size_t(p)].zone)) continue;
+    if (!part.has_zone(prepared.mesh.patches[p].zone)) continue;
     SlipSurface const* const surface = prepared.surface.slip_surface(p);
     if (surface == nullptr) continue;
     if (surface->kind == SlipKind::axial || surface->kind == SlipKind::facets) return {};
@@ -147,8 +147,8 @@ struct Asking {
     for (auto const& r : prepared.planned.boundary.requests)
       if (part.has_node(r.node)) rules.insert(r.rule);
     for (int const r : rules) {
-      fixed = fixed || std::holds_alternative<FixedRule>(all[std::size_t(r)].rule);
-      prescribed = prescribed || std::holds_alternative<PrescribedRule>(all[std::size_t(r)].rule);
+      fixed = fixed || std::holds_alternative<FixedRule>(all[r].rule);
+      prescribed = prescribed || std::holds_alternative<PrescribedRule>(all[r].rule);
     }
   }
 };
@@ -159,7 +159,7 @@ bool any_moves(std::vector<Vec3> const& u) {
 
 std::string note_on(Mesh const& mesh, std::vector<int> const& zones) {
   std::vector<std::string> names;
-  for (int const z : zones) names.push_back(mesh.zones[std::size_t(z)].name);
+  for (int const z : zones) names.push_back(mesh.zones[z].name);
   constexpr std::size_t most = 4;
   return "what all boundaries of " + quote_list(names, most) +
          " have in common, an affine motion, is taken off before the first stage and added to all nodes after the last";
@@ -213,7 +213,7 @@ void carry_common_motions(PreparedMorph const& from, PlannedMorph& to) {
 void carry_common_motions(PreparedMorph const& from, std::span<Vec3 const> boundary, Mesh const& mesh, Plan& to) {
   for (CommonPart const& same : from.plan().common) {
     std::vector<Vec3> given;
-    for (std::int32_t const k : same.boundary) given.push_back(boundary[std::size_t(k)]);
+    for (std::int32_t const k : same.boundary) given.push_back(boundary[k]);
     PartBuilder part(mesh, same.zones);
     part.list(to);
     CommonMotion motion = same.motion;

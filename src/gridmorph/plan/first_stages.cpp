@@ -15,12 +15,12 @@ std::string name_of(Stage const& stage) {
 
 /// Slots that are given, or that some stage sweeps.
 std::vector<char> reached_slots(Plan const& plan) {
-  std::vector<char> out(std::size_t(plan.n_slots), 0);
-  for (Index const slot : plan.boundary_slots) out[std::size_t(slot)] = 1;
+  std::vector<char> out(plan.n_slots, 0);
+  for (Index const slot : plan.boundary_slots) out[slot] = 1;
   for (Stage const& stage : plan.stages)
     for (kernels::SkeletonSweep const& sweep : stage.sweeps)
       for (Index q = 0; q < sweep.n_q; ++q)
-        for (Index p = 0; p < sweep.n_p; ++p) out[std::size_t(sweep.slot + p + q * sweep.slot_q)] = 1;
+        for (Index p = 0; p < sweep.n_p; ++p) out[sweep.slot + p + q * sweep.slot_q] = 1;
   return out;
 }
 
@@ -28,7 +28,7 @@ std::vector<char> reached_slots(Plan const& plan) {
 void keep_reached(std::vector<char> const& reached, CommonPart& part) {
   std::size_t n = 0;
   for (std::size_t k = 0; k < part.slots.size(); ++k) {
-    if (reached[std::size_t(part.slots[k])] == 0) continue;
+    if (reached[part.slots[k]] == 0) continue;
     part.slots[n] = part.slots[k];
     part.position[n++] = part.position[k];
   }
@@ -43,10 +43,10 @@ class KeptBoxes {
 
   void renumber(std::vector<VolumePart>& parts) {
     for (VolumePart& part : parts) {
-      int& number = number_[std::size_t(part.box)];
+      int& number = number_[part.box];
       if (number < 0) {
         number = int(boxes_.size());
-        boxes_.push_back(plan_.boxes[std::size_t(part.box)]);
+        boxes_.push_back(plan_.boxes[part.box]);
       }
       part.box = number;
     }
@@ -86,11 +86,11 @@ Plan first_stages(Plan const& plan, StagesDone const& done) {
   boxes.finish();
   auto const reached = reached_slots(out);
   for (CommonPart& part : out.common) keep_reached(reached, part);
-  if (!out.line_parameters.empty()) out.line_parameters.resize(std::size_t(n_parameters));
-  std::vector<char> given(std::size_t(plan.n_slots), 0);
-  for (Index const slot : plan.boundary_slots) given[std::size_t(slot)] = 1;
+  if (!out.line_parameters.empty()) out.line_parameters.resize(n_parameters);
+  std::vector<char> given(plan.n_slots, 0);
+  for (Index const slot : plan.boundary_slots) given[slot] = 1;
   for (Index slot = 0; slot < plan.n_slots; ++slot) {
-    if (given[std::size_t(slot)] != 0) continue;
+    if (given[slot] != 0) continue;
     out.boundary_slots.push_back(slot);
     out.boundary_nodes.push_back(-1);
   }
@@ -105,12 +105,12 @@ StagesOfCells stages_of_cells(Mesh const& mesh, Plan const& plan) {
     Stage const& stage = plan.stages[s];
     for (std::size_t b = 0; b < stage.cells.size(); ++b) {
       CellBox const& box = stage.cells[b];
-      Zone const& zone = mesh.zones[std::size_t(box.zone)];
+      Zone const& zone = mesh.zones[box.zone];
       Index const ni = zone.extent[0] - 1, nj = zone.extent[1] - 1;
       for (int k = box.cells.begin[2]; k < box.cells.end[2]; ++k)
         for (int j = box.cells.begin[1]; j < box.cells.end[1]; ++j)
           for (int i = box.cells.begin[0]; i < box.cells.end[0]; ++i) {
-            auto const cell = std::size_t(first[std::size_t(box.zone)] + i + ni * (j + nj * k));
+            auto const cell = std::size_t(first[box.zone] + i + ni * (j + nj * k));
             out.stage[cell] = int(s) + 1;
             out.chain[cell] = stage.chain_of_cells[b] + 1;
             out.direction[cell] = stage.axis_of_cells[b] + 1;

@@ -17,11 +17,11 @@ std::vector<Vec3> put_back_given(UnstructuredPlan const& plan, Coordinates const
     own_offsets.clear();
     for (auto at = std::size_t(slip.first[k]); at < std::size_t(slip.first[k + 1]); ++at) {
       std::int32_t const turned = slip.turned[at];
-      images.emplace_back(surfaces[std::size_t(slip.surface[at])], along_axes(plan.axes, x[slip.place[at]]),
-                          turned < 0 ? nullptr : &plan.rotations[std::size_t(turned)]);
+      images.emplace_back(surfaces[slip.surface[at]], along_axes(plan.axes, x[slip.place[at]]),
+                          turned < 0 ? nullptr : &plan.rotations[turned]);
       own_offsets.push_back(images.back().own_offset());
     }
-    Vec3& asked = given[std::size_t(slip.of[k])];
+    Vec3& asked = given[slip.of[k]];
     Vec3 const own = along_axes(plan.axes, asked);
     Vec3 u = own, rate;
     kernels::constrain_to_all<false>(int(images.size()), kernels::Listed<kernels::SurfaceOfImage>{images.data()},

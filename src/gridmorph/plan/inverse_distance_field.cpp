@@ -55,7 +55,7 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
                             while (!room.open.empty()) {
                               Index32 const g = room.open.back();
                               room.open.pop_back();
-                              auto const& group = tree.groups[std::size_t(g)];
+                              auto const& group = tree.groups[g];
                               double const d = std::max(distance(x, group.centre), nearest);
                               if (group.part[0] >= 0 && group.radius > opening * d) {
                                 room.open.push_back(group.part[1]);

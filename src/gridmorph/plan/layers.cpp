@@ -61,8 +61,8 @@ std::vector<Index32> sorted(HostInstance const& host, std::vector<Index32> const
   host.visit([&](auto const& exec) {
     detail::KeyedIndices<Kokkos::HostSpace> const list(nodes.size(), "gridmorph::make_layers");
     detail::for_all(host, "gridmorph::make_layers::keys", std::ssize(nodes), [&](Index k) {
-      list.number(k) = nodes[std::size_t(k)];
-      list.key(k) = sort_key(distance[std::size_t(nodes[std::size_t(k)])]);
+      list.number(k) = nodes[k];
+      list.key(k) = sort_key(distance[nodes[k]]);
     });
     auto const by_key = detail::sort_keys(exec, list);
     compat::fence(exec, "gridmorph::make_layers (read by the host)");
@@ -94,10 +94,9 @@ Turns take_turns(NodeGraph const& graph, std::vector<std::uint8_t> const& seeds,
     std::vector<Index32> waiting;
     for (Index32 const node : order) {
       auto const around = graph.neighbours[node];
-      if (std::any_of(around.begin(), around.end(),
-                      [&](Index32 m) { return out.of[std::size_t(m)] != Turns::never; })) {
+      if (std::any_of(around.begin(), around.end(), [&](Index32 m) { return out.of[m] != Turns::never; })) {
         out.node.push_back(node);
-        out.of[std::size_t(node)] = Index32(out.node.size());
+        out.of[node] = Index32(out.node.size());
       } else {
         waiting.push_back(node);
       }
@@ -120,19 +119,19 @@ LayerRows make_layers(HostInstance const& host, NodeGraph const& graph, Coordina
   Turns const turns = take_turns(graph, seeds, sorted(host, nodes, distance, is_before));
   // From neighbours that had their turn before.
   auto const make = [&, sources = std::vector<Source>()](Index k, InterpolationOperator& out) mutable {
-    Index32 const node = turns.node[std::size_t(k)];
+    Index32 const node = turns.node[k];
     sources.clear();
     Index32 nearest = -1;
     double least = 0;
     for (Index32 const m : graph.neighbours[node]) {
-      if (turns.of[std::size_t(m)] > k) continue;
-      double const away = is_before.rounded_steps(distance[std::size_t(m)]);
+      if (turns.of[m] > k) continue;
+      double const away = is_before.rounded_steps(distance[m]);
       if (nearest < 0 || away < least || (away == least && is_before(m, nearest))) {
         nearest = m;
         least = away;
       }
       double const edge = gridmorph::distance(coordinates[node], coordinates[m]);
-      double const share = share_of_slope((distance[std::size_t(node)] - distance[std::size_t(m)]) / edge);
+      double const share = share_of_slope((distance[node] - distance[m]) / edge);
       if (share > 0) sources.push_back({share * weight(node, m), m});
     }
     if (sources.empty()) sources.push_back({1, nearest});
@@ -144,19 +143,17 @@ LayerRows make_layers(HostInstance const& host, NodeGraph const& graph, Coordina
   std::vector<Index> count{0};
   for (Index r = 0; r < rows.size(); ++r) {
     int highest = 0;
-    for (Index k = rows.first[std::size_t(r)]; k < rows.first[std::size_t(r) + 1]; ++k)
-      highest = std::max(highest, layer[std::size_t(rows.item[std::size_t(k)])]);
-    layer[std::size_t(rows.target[std::size_t(r)])] = highest + 1;
+    for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) highest = std::max(highest, layer[rows.item[k]]);
+    layer[rows.target[r]] = highest + 1;
     if (highest + 1 == std::ssize(count)) count.push_back(0);
-    ++count[std::size_t(highest) + 1];
+    ++count[highest + 1];
   }
   LayerRows out;
   out.level.resize(count.size());
   std::partial_sum(count.begin(), count.end(), out.level.begin());
   // Rows layer by layer, each in the order of distance.
   std::vector<Index> next(out.level.begin(), out.level.end()), order(std::size_t(rows.size()));
-  for (Index r = 0; r < rows.size(); ++r)
-    order[std::size_t(next[std::size_t(layer[std::size_t(rows.target[std::size_t(r)])]) - 1]++)] = r;
+  for (Index r = 0; r < rows.size(); ++r) order[next[std::size_t(layer[rows.target[r]]) - 1]++] = r;
   out.rows = gathered(host, rows, order);
   return out;
 }

@@ -69,15 +69,15 @@ struct PlaceMoments {
 /// With the weights that kernels have.
 template <class Source>
 PlaceMoments mean_of_row(InterpolationOperator const& rows, Index r, Source const& source) {
-  Index const from = rows.first[std::size_t(r)], to = rows.first[std::size_t(r) + 1];
+  Index const from = rows.first[r], to = rows.first[r + 1];
   PlaceMoments sum;
   double rest = 1;
   for (Index k = from + 1; k < to; ++k) {
-    double const w = rows.weight[std::size_t(k)];
+    double const w = rows.weight[k];
     rest -= w;
-    sum.add(w, source(rows.item[std::size_t(k)]));
+    sum.add(w, source(rows.item[k]));
   }
-  sum.add(rest, source(rows.item[std::size_t(from)]));
+  sum.add(rest, source(rows.item[from]));
   return sum;
 }
 
@@ -129,9 +129,9 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
 
   std::vector<double> distance_of(readers.size());
   detail::for_all(host, "gridmorph::least_squares_distance", std::ssize(readers), [&](Index at) {
-    FieldReader const& reader = readers[std::size_t(at)];
+    FieldReader const& reader = readers[at];
     double const own = reader.distance;
-    distance_of[std::size_t(at)] =
+    distance_of[at] =
         images.empty() ? own : std::min(own, std::max(tree.distance(coordinates[reader.node]), 1e-14 * tree.size()));
   });
 
@@ -140,53 +140,53 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
     std::vector<Index32> items;
     std::vector<double> weights;
   };
-  out.nodes = make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
-                        [&, room = Room()](Index r, InterpolationOperator& rows) mutable {
-                          Vec3 const x = coordinates[readers[std::size_t(r)].node];
-                          double const from_walls = distance_of[std::size_t(r)];
-                          room.items.clear();
-                          room.weights.clear();
-                          room.open.assign(1, {0, 1.0});
-                          double largest = 0;
-                          while (!room.open.empty()) {
-                            auto const [g, part] = room.open.back();
-                            room.open.pop_back();
-                            auto const& group = tree.groups[std::size_t(g)];
-                            double const d = std::max(distance(x, group.centre), from_walls);
-                            // Lengths may be tiny: only ratios of weights count.
-                            double const near = from_walls / d;
-                            double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
-                            double const wide = group.radius / d;
-                            if (wide < 2 * opening && weight < least_weight * largest) continue;
-                            double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
-                            if (opened > 0) {
-                              room.open.emplace_back(group.part[1], part * opened);
-                              room.open.emplace_back(group.part[0], part * opened);
-                            }
-                            weight *= 1 - opened;
-                            if (!(weight > least_weight * largest)) continue;
-                            largest = std::max(largest, weight);
-                            room.items.push_back(g);
-                            room.weights.push_back(weight);
-                          }
-                          std::size_t kept = 0;
-                          for (std::size_t k = 0; k < room.items.size(); ++k) {
-                            if (room.weights[k] < least_weight * largest) continue;
-                            room.items[kept] = room.items[k];
-                            room.weights[kept++] = room.weights[k] / largest;
-                          }
-                          rows.add(readers[std::size_t(r)].node, std::span(room.items).first(kept),
-                                   std::span(room.weights).first(kept));
-                        });
+  out.nodes =
+      make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
+                [&, room = Room()](Index r, InterpolationOperator& rows) mutable {
+                  Vec3 const x = coordinates[readers[r].node];
+                  double const from_walls = distance_of[r];
+                  room.items.clear();
+                  room.weights.clear();
+                  room.open.assign(1, {0, 1.0});
+                  double largest = 0;
+                  while (!room.open.empty()) {
+                    auto const [g, part] = room.open.back();
+                    room.open.pop_back();
+                    auto const& group = tree.groups[g];
+                    double const d = std::max(distance(x, group.centre), from_walls);
+                    // Lengths may be tiny: only ratios of weights count.
+                    double const near = from_walls / d;
+                    double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
+                    double const wide = group.radius / d;
+                    if (wide < 2 * opening && weight < least_weight * largest) continue;
+                    double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
+                    if (opened > 0) {
+                      room.open.emplace_back(group.part[1], part * opened);
+                      room.open.emplace_back(group.part[0], part * opened);
+                    }
+                    weight *= 1 - opened;
+                    if (!(weight > least_weight * largest)) continue;
+                    largest = std::max(largest, weight);
+                    room.items.push_back(g);
+                    room.weights.push_back(weight);
+                  }
+                  std::size_t kept = 0;
+                  for (std::size_t k = 0; k < room.items.size(); ++k) {
+                    if (room.weights[k] < least_weight * largest) continue;
+                    room.items[kept] = room.items[k];
+                    room.weights[kept++] = room.weights[k] / largest;
+                  }
+                  rows.add(readers[r].node, std::span(room.items).first(kept), std::span(room.weights).first(kept));
+                });
 
   // With the weights as they are rounded, so that common motions are exact.
   std::vector<PlaceMoments> moment(tree.groups.size());
   for (Index r = 0; r < out.leaves.size(); ++r)
-    moment[std::size_t(out.leaves.target[std::size_t(r)])] =
+    moment[out.leaves.target[r]] =
         mean_of_row(out.leaves, r, [&](Index32 k) { return PlaceMoments::of(sources.place[k] - out.origin); });
-  auto const of_group = [&](Index32 g) { return moment[std::size_t(g)]; };
+  auto const of_group = [&](Index32 g) { return moment[g]; };
   for (Index r = 0; r < out.groups.rows.size(); ++r)
-    moment[std::size_t(out.groups.rows.target[std::size_t(r)])] = mean_of_row(out.groups.rows, r, of_group);
+    moment[out.groups.rows.target[r]] = mean_of_row(out.groups.rows, r, of_group);
   out.lean.resize(readers.size());
   out.level.resize(readers.size());
   out.room.resize(readers.size());

@@ -330,8 +330,7 @@ class Scheduler {
   /// degrees: what turns far tears where it hands nothing on.
   [[nodiscard]] bool moves_rigidly(WallRoots::BodySample const& body) const {
     std::map<int, std::vector<std::size_t>> of_rule;
-    for (std::size_t n = 0; n < body.places.size(); ++n)
-      of_rule[motion_.patch[std::size_t(body.patches[n])].rule].push_back(n);
+    for (std::size_t n = 0; n < body.places.size(); ++n) of_rule[motion_.patch[body.patches[n]].rule].push_back(n);
     std::vector<Vec3> moved = body.places;
     double largest = 0;
     for (auto const& [rule, nodes] : of_rule) {

@@ -17,8 +17,8 @@ InterpolationOperator joined(HostInstance const& host, std::span<InterpolationOp
   out.item.resize(n_items);
   out.weight.resize(n_items);
   detail::for_all_parts(host, "gridmorph::join_rows", std::ssize(parts), [&](Index p) {
-    auto const& part = parts[std::size_t(p)];
-    auto const to_row = std::ptrdiff_t(row[std::size_t(p)]), to_item = std::ptrdiff_t(item[std::size_t(p)]);
+    auto const& part = parts[p];
+    auto const to_row = std::ptrdiff_t(row[p]), to_item = std::ptrdiff_t(item[p]);
     std::copy(part.target.begin(), part.target.end(), out.target.begin() + to_row);
     std::transform(part.first.begin() + 1, part.first.end(), out.first.begin() + 1 + to_row,
                    [&](Index n) { return n + Index(to_item); });
@@ -37,12 +37,12 @@ InterpolationOperator gathered(HostInstance const& host, InterpolationOperator c
     auto const from = std::size_t(order[r]);
     out.first[r + 1] = out.first[r] + rows.first[from + 1] - rows.first[from];
   }
-  out.item.resize(std::size_t(out.first.back()));
+  out.item.resize(out.first.back());
   out.weight.resize(out.item.size());
   detail::for_all(host, "gridmorph::gather_rows", std::ssize(order), [&](Index r) {
-    auto const from = std::size_t(order[std::size_t(r)]);
-    auto const begin = rows.first[from], end = rows.first[from + 1], to = out.first[std::size_t(r)];
-    out.target[std::size_t(r)] = rows.target[from];
+    auto const from = std::size_t(order[r]);
+    auto const begin = rows.first[from], end = rows.first[from + 1], to = out.first[r];
+    out.target[r] = rows.target[from];
     std::copy(rows.item.begin() + begin, rows.item.begin() + end, out.item.begin() + to);
     std::copy(rows.weight.begin() + begin, rows.weight.begin() + end, out.weight.begin() + to);
   });

@@ -22,10 +22,10 @@ InterpolationOperator gathered(HostInstance const& host, InterpolationOperator c
 template <class Make>
 InterpolationOperator make_rows(HostInstance const& host, std::string const& label, Index count, Make const& make) {
   constexpr Index part = 512;
-  std::vector<InterpolationOperator> parts(std::size_t((count + part - 1) / part));
+  std::vector<InterpolationOperator> parts((count + part - 1) / part);
   detail::for_all_parts(host, label, std::ssize(parts), [&](Index p) {
     auto own = make;  // with its own room
-    for (Index k = p * part; k < std::min(count, (p + 1) * part); ++k) own(k, parts[std::size_t(p)]);
+    for (Index k = p * part; k < std::min(count, (p + 1) * part); ++k) own(k, parts[p]);
   });
   return joined(host, parts);
 }

@@ -14,13 +14,13 @@ std::array<int, 3> plane_axes(Mesh const& mesh) {
 
 Vec3 along_axes(std::array<int, 3> const& axes, Vec3 const& v) {
   std::array<double, 3> const of_mesh{v.x, v.y, v.z};
-  return {of_mesh[std::size_t(axes[0])], of_mesh[std::size_t(axes[1])], of_mesh[std::size_t(axes[2])]};
+  return {of_mesh[axes[0]], of_mesh[axes[1]], of_mesh[axes[2]]};
 }
 
 Vec3 back_from_axes(std::array<int, 3> const& axes, Vec3 const& v) {
   std::array<double, 3> out{};
   std::array<double, 3> const seen{v.x, v.y, v.z};
-  for (std::size_t k = 0; k < 3; ++k) out[std::size_t(axes[k])] = seen[k];
+  for (std::size_t k = 0; k < 3; ++k) out[axes[k]] = seen[k];
   return {out[0], out[1], out[2]};
 }
 
@@ -43,9 +43,9 @@ std::vector<SlipSurface> along_axes(std::array<int, 3> const& axes, std::vector<
 Coordinates along_axes(std::array<int, 3> const& axes, Coordinates const& x) {
   std::array<Coordinates::View, 3> const of_mesh{x.x, x.y, x.z};
   Coordinates out;
-  out.x = of_mesh[std::size_t(axes[0])];
-  out.y = of_mesh[std::size_t(axes[1])];
-  out.z = of_mesh[std::size_t(axes[2])];
+  out.x = of_mesh[axes[0]];
+  out.y = of_mesh[axes[1]];
+  out.z = of_mesh[axes[2]];
   return out;
 }
 

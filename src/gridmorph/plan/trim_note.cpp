@@ -25,8 +25,7 @@ class Gathering {
         deciding_(deciding_requests(requests, motion)),
         largest_(rules_.size(), 0) {
     for (std::size_t n = 0; n < given.size(); ++n)
-      if (int const r = rule_of(n); r >= 0)
-        largest_[std::size_t(r)] = std::max(largest_[std::size_t(r)], norm(given[n]));
+      if (int const r = rule_of(n); r >= 0) largest_[r] = std::max(largest_[r], norm(given[n]));
   }
 
   /// A node whose displacement is given[slot], and that lies on the surface of a patch.
@@ -47,9 +46,8 @@ class Gathering {
     std::vector<Trim> out;
     for (auto const& [of, found] : found_) {
       auto const [patch, rule] = of;
-      out.push_back({boundary_.describe_patch(patch), rules_[std::size_t(rule)].where, Index(found.nodes.size()),
-                     found.most, boundary_.describe_node(found.where), largest_[std::size_t(rule)], outcome,
-                     boundary_.size()});
+      out.push_back({boundary_.describe_patch(patch), rules_[rule].where, Index(found.nodes.size()), found.most,
+                     boundary_.describe_node(found.where), largest_[rule], outcome, boundary_.size()});
     }
     return out;
   }
@@ -65,8 +63,8 @@ class Gathering {
   /// nothing itself.
   [[nodiscard]] int rule_of(std::size_t slot) const {
     Index const request = slot < deciding_.size() ? deciding_[slot] : -1;
-    int const rule = request < 0 ? -1 : requests_.requests[std::size_t(request)].rule;
-    return rule >= 0 && goes_along(rules_[std::size_t(rule)].rule) ? -1 : rule;
+    int const rule = request < 0 ? -1 : requests_.requests[request].rule;
+    return rule >= 0 && goes_along(rules_[rule].rule) ? -1 : rule;
   }
 
   Boundary const& boundary_;
@@ -85,7 +83,7 @@ std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
   std::vector<int> const number = slip_surface_numbers(motion.boundary().patches().size(), motion, surfaces);
   std::vector<int> out(surfaces.size(), -1);
   for (std::size_t p = number.size(); p-- > 0;)
-    if (number[p] >= 0) out[std::size_t(number[p])] = int(p);
+    if (number[p] >= 0) out[number[p]] = int(p);
   return out;
 }
 
@@ -102,9 +100,7 @@ std::vector<Trim> trims(Plan const& plan, BoundaryRequests const& requests, Boun
       auto const slot = slot_of.find(end.node);
       if (end.tolerance == 0 || slot == slot_of.end()) continue;
       for (int const s : end.surface)
-        if (s >= 0)
-          gathering.look(end.node, slot->second, patch_of[std::size_t(s)], plan.surfaces[std::size_t(s)],
-                         end.tolerance);
+        if (s >= 0) gathering.look(end.node, slot->second, patch_of[s], plan.surfaces[s], end.tolerance);
     }
   return gathering.result("they are put back, and the correction is spread along the span");
 }
@@ -114,7 +110,7 @@ std::vector<Trim> trims(BoundaryConditions const& boundary, std::vector<Vec3> co
   Gathering gathering(boundary.requests, motion, given);
   double const size = motion.boundary().size();
   for (auto const& at : boundary.given_on_slip) {
-    SlipSurface const& surface = motion.slip_surfaces()[std::size_t(at.surface)];
+    SlipSurface const& surface = motion.slip_surfaces()[at.surface];
     gathering.look(at.node, std::size_t(at.slot), at.patch, surface, given_tolerance(surface, size));
   }
   return gathering.result("they are put back");

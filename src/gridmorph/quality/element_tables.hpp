@@ -22,7 +22,7 @@ template <class Exec>
 PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews<typename Exec::memory_space> const& c,
                                                Index n_nodes) {
   Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const points(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), std::size_t(n_nodes));
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), n_nodes);
   kernels::pack_points(exec, field_of(c), points);
   return points;
 }
@@ -200,7 +200,7 @@ ElementTables<typename Exec::memory_space> element_tables(Exec const& exec, Mesh
 inline std::vector<kernels::CellChunk> element_chunks(Mesh const& mesh) {
   std::vector<kernels::CellChunk> chunks;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
-    Index const n = mesh.zones[std::size_t(z)].n_elements;
+    Index const n = mesh.zones[z].n_elements;
     for (Index begin = 0; begin < n; begin += kernels::cells_per_chunk)
       chunks.push_back({z,
                         {0, 0, 0},

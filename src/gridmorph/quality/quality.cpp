@@ -50,7 +50,7 @@ std::vector<Index> first_cells(Mesh const& mesh) {
 std::vector<WallFace> wall_faces(Mesh const& mesh, std::span<int const> patches) {
   std::vector<WallFace> faces;
   for (int const p : patches) {
-    Patch const& patch = mesh.patches.at(std::size_t(p));
+    Patch const& patch = mesh.patches.at(p);
     int axis = -1, thin = 0;
     for (int a = 0; a < 3; ++a)
       if (patch.range.extent(a) == 1) {

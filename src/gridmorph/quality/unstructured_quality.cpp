@@ -17,13 +17,13 @@ namespace gridmorph {
 std::vector<signed char> volume_signs(HostInstance const& host, Mesh const& mesh) {
   detail::check_size(mesh, mesh.coordinates.x.extent(0), mesh.coordinates.y.extent(0), mesh.coordinates.z.extent(0),
                      "coordinates of the mesh");
-  std::vector<signed char> sign(std::size_t(mesh.n_elements()), 0);
+  std::vector<signed char> sign(mesh.n_elements(), 0);
   host.visit([&](auto const& exec) {
     auto const tables = detail::element_tables(exec, mesh);
     auto const coordinates = detail::pack(exec, views(mesh.coordinates), mesh.n_nodes());
     detail::for_all(exec, "gridmorph::volume_signs", mesh.n_elements(), [&](Index e) {
       double const v = tables.volume(coordinates, e);
-      sign[std::size_t(e)] = v > 0 ? 1 : v < 0 ? -1 : 0;
+      sign[e] = v > 0 ? 1 : v < 0 ? -1 : 0;
     });
   });
   return sign;
@@ -36,25 +36,25 @@ std::vector<NegativeElements> negative_elements(Mesh const& mesh) {
 std::vector<NegativeElements> negative_elements(Mesh const& mesh, std::vector<signed char> const& sign) {
   std::vector<NegativeElements> out;
   for (int z = 0; z < int(mesh.zones.size()); ++z) {
-    auto const& zone = mesh.zones[std::size_t(z)];
+    auto const& zone = mesh.zones[z];
     std::array<NegativeElements, n_element_types> types;
     for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) {
-      auto& entry = types[std::size_t(mesh.elements.type[std::size_t(e)])];
+      auto& entry = types[std::size_t(mesh.elements.type[e])];
       ++entry.of;
-      if (sign[std::size_t(e)] < 0 && entry.count++ == 0) entry.first = e;
+      if (sign[e] < 0 && entry.count++ == 0) entry.first = e;
     }
     for (int t = 0; t < n_element_types; ++t) {
-      if (types[std::size_t(t)].count == 0) continue;
-      types[std::size_t(t)].zone = z;
-      types[std::size_t(t)].type = ElementType(t);
-      out.push_back(types[std::size_t(t)]);
+      if (types[t].count == 0) continue;
+      types[t].zone = z;
+      types[t].type = ElementType(t);
+      out.push_back(types[t]);
     }
   }
   return out;
 }
 
 std::string describe(Mesh const& mesh, NegativeElements const& n) {
-  auto const& zone = mesh.zones[std::size_t(n.zone)];
+  auto const& zone = mesh.zones[n.zone];
   std::string const type(to_string(n.type));
   return "zone '" + zone.name + "': " + std::to_string(n.count) + " of " + std::to_string(n.of) + " elements of type " +
          type + (n.count == 1 ? " is" : " are") + " numbered inside out (negative volume), the first is " + type + " " +
@@ -109,7 +109,7 @@ Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres
     PackedPoints<typename Exec::memory_space> const& points, bool solid) {
   Index const n = tables.elements.size();
   Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const centres(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::centres"), std::size_t(n));
+      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::centres"), n);
   Kokkos::parallel_for(
       "gridmorph::measure_quality::centres", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
       KOKKOS_LAMBDA(Index const e) {

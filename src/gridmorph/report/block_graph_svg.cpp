@@ -179,7 +179,7 @@ class Drawing {
   void draw(BlockGraph::Interface const& face) {
     bool const is_along = std::find(along_.begin(), along_.end(), std::pair(face.a, face.b)) != along_.end();
     if (is_along && !face.periodic) return;  // the chain's arrow says so
-    Place a = node_[std::size_t(face.a)], b = node_[std::size_t(face.b)];
+    Place a = node_[face.a], b = node_[face.b];
     if (b.y < a.y) std::swap(a, b);
     std::string path;
     double const ax = a.x + node_width / 2, bx = b.x + node_width / 2, below = a.y + node_height;

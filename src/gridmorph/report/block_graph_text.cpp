@@ -47,7 +47,7 @@ std::string dot_text(BlockGraph const& graph) {
       "\"Helvetica\", fontsize = 10];\n  edge [fontname = \"Helvetica\", fontsize = 9];\n";
   for (std::size_t c = 0; c < graph.chains.size(); ++c) {
     BlockGraph::Chain const& chain = graph.chains[c];
-    std::string const name = fmt::format("{}, chain {}", graph.stages[std::size_t(chain.stage)], chain.number);
+    std::string const name = fmt::format("{}, chain {}", graph.stages[chain.stage], chain.number);
     std::string ends;
     if (chain.ends[1].empty() || chain.ends[0].empty())
       ends = chain.ends[0] + chain.ends[1];

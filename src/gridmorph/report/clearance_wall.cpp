@@ -132,12 +132,12 @@ void SurfaceWall::find_sides(FacetList const& inward) {
       if (edge >= 0) parts.join(int(f), edge / 4);
   std::vector<int> balance(surface_.facets.size(), 0);
   auto const ask = [&](std::array<std::int32_t, 4> const& f) {
-    auto const at = [&](int corner) { return inward.points[std::size_t(f[std::size_t(corner)])]; };
+    auto const at = [&](int corner) { return inward.points[f[corner]]; };
     int const last = f[3] < 0 ? 2 : 3;
     Vec3 const middle = f[3] < 0 ? (1.0 / 3) * (at(0) + at(1) + at(2)) : 0.25 * (at(0) + at(1) + at(2) + at(3));
     auto const foot = surface_.closest_point(middle);
     double const alike = dot(cross(at(2) - at(0), at(last) - at(1)), foot.normal);
-    balance[std::size_t(parts.root(foot.facet))] += alike < 0 ? -1 : 1;
+    balance[parts.root(foot.facet)] += alike < 0 ? -1 : 1;
   };
   // Some of the facets, and all of them only where these leave a part out.
   constexpr std::size_t enough = 1000;
@@ -145,9 +145,9 @@ void SurfaceWall::find_sides(FacetList const& inward) {
   std::size_t const n = inward.facets.size();
   for (std::size_t const stride : {std::max<std::size_t>(1, n / enough), std::size_t(1)}) {
     for (std::size_t f = 0; f < n; f += stride) ask(inward.facets[f]);
-    if (std::all_of(roots.begin(), roots.end(), [&](int part) { return balance[std::size_t(part)] != 0; })) break;
+    if (std::all_of(roots.begin(), roots.end(), [&](int part) { return balance[part] != 0; })) break;
   }
-  for (int const part : roots) side_.push_back(balance[std::size_t(part)] < 0 ? -1 : 1);
+  for (int const part : roots) side_.push_back(balance[part] < 0 ? -1 : 1);
 }
 
 void SurfaceWall::find_holes(std::vector<Vec3> const& standing) {
@@ -159,12 +159,11 @@ void SurfaceWall::find_holes(std::vector<Vec3> const& standing) {
 /// Whether a foot is on a rim between two nodes that a blade has.
 bool SurfaceWall::at_hole(kernels::FacetFoot const& foot) const {
   if (stands_.empty() || foot.place != kernels::FacetFoot::Place::rim) return false;
-  kernels::Facet const& facet = surface_.facets[std::size_t(foot.facet)];
+  kernels::Facet const& facet = surface_.facets[foot.facet];
   kernels::FacetPatch const patch = surface_.view().patch(foot.facet);
   int const corners = facet.n_corners();
   for (int q = 0; q < corners; ++q) {
-    if (facet.neighbour[q] >= 0 || stands_[std::size_t(facet.corner[q])] == 0 ||
-        stands_[std::size_t(facet.corner[(q + 1) % corners])] == 0)
+    if (facet.neighbour[q] >= 0 || stands_[facet.corner[q]] == 0 || stands_[facet.corner[(q + 1) % corners]] == 0)
       continue;
     double u = 0, v = 0;
     patch.on_edge(q, patch.along_edge(q, foot.u, foot.v), u, v);
@@ -177,7 +176,7 @@ bool SurfaceWall::at_hole(kernels::FacetFoot const& foot) const {
 double SurfaceWall::distance(Vec3 const& point) const {
   auto const foot = surface_.closest_point(point);
   double const height = dot(point - foot.point, foot.normal);
-  double const side = side_[std::size_t(foot.facet)];
+  double const side = side_[foot.facet];
   return at_hole(foot) ? side * height : (height < 0 ? -side : side) * foot.distance;
 }
 

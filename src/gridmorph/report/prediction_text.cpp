@@ -12,9 +12,7 @@ namespace {
 
 constexpr char direction_name[3] = {'i', 'j', 'k'};
 
-std::string place(Mesh const& mesh, CellValue const& at) {
-  return describe_cell(mesh.zones[std::size_t(at.zone)].name, at.cell);
-}
+std::string place(Mesh const& mesh, CellValue const& at) { return describe_cell(mesh.zones[at.zone].name, at.cell); }
 
 std::string smallest(Mesh const& mesh, PredictedCells const& cells) {
   return fmt::format("{} ({} in the baseline) at {}", format_value(cells.scaled_jacobian.value),
@@ -39,7 +37,7 @@ std::string name_of(PredictedChain const& chain) { return fmt::format("stage {},
 nlohmann::json value_json(Mesh const& mesh, CellValue const& at) {
   if (at.zone < 0) return nullptr;
   return {{"value", finite_or_null(at.value)},
-          {"zone", mesh.zones[std::size_t(at.zone)].name},
+          {"zone", mesh.zones[at.zone].name},
           {"cell", {at.cell[0] + 1, at.cell[1] + 1, at.cell[2] + 1}}};
 }
 

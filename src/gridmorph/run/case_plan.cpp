@@ -213,7 +213,7 @@ std::vector<StageOutcome> CasePlan::judge_stages(Coordinates const& morphed) con
   for (auto const& stage : PlanAccess::chains(plan_)->stages) {
     CellValue const worst =
         min_determinant(exec_, mesh_.mesh(), views(morphed), mesh_.indexed().handedness(), stage.cells);
-    out.push_back({stage.name, worst, worst.zone < 0 ? "" : mesh_.mesh().zones[std::size_t(worst.zone)].name});
+    out.push_back({stage.name, worst, worst.zone < 0 ? "" : mesh_.mesh().zones[worst.zone].name});
   }
   return out;
 }

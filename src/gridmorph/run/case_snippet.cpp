@@ -149,13 +149,13 @@ int most_like_a_body(MeshSummary const& s, std::vector<Role> const& roles) {
 /// The boundaries that are still, enclosed as much and joined to a body are part of it.
 void add_rest_of_body(MeshSummary const& s, int body, std::vector<Role>& roles) {
   std::vector<int> front{body};
-  int const enclosed = s.boundaries[std::size_t(body)].enclosed;
+  int const enclosed = s.boundaries[body].enclosed;
   while (!front.empty()) {
     int const at = front.back();
     front.pop_back();
-    for (int const next : s.boundaries[std::size_t(at)].touches) {
-      auto& role = roles[std::size_t(next)];
-      auto const& other = s.boundaries[std::size_t(next)];
+    for (int const next : s.boundaries[at].touches) {
+      auto& role = roles[next];
+      auto const& other = s.boundaries[next];
       if (role != Role::still || enclosed == 0 || other.enclosed < enclosed || is_plain(other)) continue;
       role = Role::moving;
       front.push_back(next);
@@ -183,7 +183,7 @@ void add_tips(MeshSummary const& s, std::vector<Role>& roles) {
     if (roles[b] != Role::end_wall) continue;
     auto const& touches = s.boundaries[b].touches;
     if (!touches.empty() &&
-        std::all_of(touches.begin(), touches.end(), [&](int t) { return roles[std::size_t(t)] == Role::moving; }))
+        std::all_of(touches.begin(), touches.end(), [&](int t) { return roles[t] == Role::moving; }))
       roles[b] = Role::moving;
   }
 }
@@ -199,9 +199,9 @@ std::vector<std::vector<int>> joined(MeshSummary const& s, std::vector<Role> con
     while (!front.empty()) {
       group.push_back(front.back());
       front.pop_back();
-      for (int const next : s.boundaries[std::size_t(group.back())].touches)
-        if (!done[std::size_t(next)] && roles[std::size_t(next)] == role) {
-          done[std::size_t(next)] = 1;
+      for (int const next : s.boundaries[group.back()].touches)
+        if (!done[next] && roles[next] == role) {
+          done[next] = 1;
           front.push_back(next);
         }
     }
@@ -259,12 +259,12 @@ class Snippet {
     if (std::find(roles_.begin(), roles_.end(), Role::moving) == roles_.end())
       if (int const body = most_like_a_body(s, roles_); body >= 0) {
         guessed_ = true;
-        roles_[std::size_t(body)] = Role::moving;
+        roles_[body] = Role::moving;
         add_rest_of_body(s, body, roles_);
       }
     // A wall round the whole mesh with a body in it is a duct, not what moves.
     bool const any_body = std::any_of(s.boundaries.begin(), s.boundaries.end(), [&](BoundarySummary const& b) {
-      return roles_[std::size_t(&b - s.boundaries.data())] == Role::moving && is_body(b, s);
+      return roles_[&b - s.boundaries.data()] == Role::moving && is_body(b, s);
     });
     for (std::size_t b = 0; any_body && b < roles_.size(); ++b)
       if (roles_[b] == Role::moving && looks_like(s.boundaries[b], "reaches round")) roles_[b] = Role::still;
@@ -289,7 +289,7 @@ class Snippet {
   [[nodiscard]] std::vector<std::string> names(std::vector<int> const& list) const {
     std::vector<std::string> out;
     for (int const b : list) {
-      auto const& name = s_.boundaries[std::size_t(b)].selector;
+      auto const& name = s_.boundaries[b].selector;
       // A name that is a family and a BC means the family.
       if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
     }
@@ -333,17 +333,17 @@ class Snippet {
   [[nodiscard]] int blade_of(std::vector<int> const& body) const {
     std::vector<int> standing;
     for (int const b : body) {
-      auto const& boundary = s_.boundaries[std::size_t(b)];
+      auto const& boundary = s_.boundaries[b];
       bool const stands = std::any_of(boundary.touches.begin(), boundary.touches.end(),
-                                      [&](int t) { return roles_[std::size_t(t)] == Role::end_wall; });
+                                      [&](int t) { return roles_[t] == Role::end_wall; });
       if ((stands || body.size() == 1) && !looks_like(boundary, "surface of revolution")) standing.push_back(b);
     }
     return standing.size() == 1 ? standing.front() : -1;
   }
 
   [[nodiscard]] bool meets_a_moving_one(int b) const {
-    auto const& touches = s_.boundaries[std::size_t(b)].touches;
-    return std::any_of(touches.begin(), touches.end(), [&](int t) { return roles_[std::size_t(t)] == Role::moving; });
+    auto const& touches = s_.boundaries[b].touches;
+    return std::any_of(touches.begin(), touches.end(), [&](int t) { return roles_[t] == Role::moving; });
   }
 
   [[nodiscard]] std::vector<int> of_role(Role role) const {
@@ -363,15 +363,15 @@ class Snippet {
     // surface of anything.
     auto const sort_in = [&](int b, std::vector<int>& standing) {
       bool const meets = meets_a_moving_one(b);
-      bool const overset = is_kind(s_.boundaries[std::size_t(b)], PatchKind::connection);
-      (meets && s_.boundaries[std::size_t(b)].flat && !overset ? planes
-       : meets && (has_facets() || overset)                    ? loose
-       : meets                                                 ? ranked
-                                                               : standing)
+      bool const overset = is_kind(s_.boundaries[b], PatchKind::connection);
+      (meets && s_.boundaries[b].flat && !overset ? planes
+       : meets && (has_facets() || overset)       ? loose
+       : meets                                    ? ranked
+                                                  : standing)
           .push_back(b);
     };
     for (int const b : of_role(Role::symmetry)) {
-      if (s_.boundaries[std::size_t(b)].flat)
+      if (s_.boundaries[b].flat)
         planes.push_back(b);
       else
         sort_in(b, rest);
@@ -399,7 +399,7 @@ class Snippet {
   [[nodiscard]] std::vector<int> paired_of_other_kinds() const {
     std::vector<int> out;
     for (int const b : of_role(Role::paired)) {
-      auto const& boundary = s_.boundaries[std::size_t(b)];
+      auto const& boundary = s_.boundaries[b];
       if (boundary.paired && !(boundary.kinds.size() == 1 && is_kind(boundary, PatchKind::other))) out.push_back(b);
     }
     return out;
@@ -411,7 +411,7 @@ class Snippet {
     std::vector<int> all;
     for (auto const& body : bodies_)
       for (int const b : body) {
-        auto const& boundary = s_.boundaries[std::size_t(b)];
+        auto const& boundary = s_.boundaries[b];
         // Over a tip there is a gap, and no near field.
         if (blade_ >= 0 && b != blade_) continue;
         all.push_back(b);

@@ -34,7 +34,7 @@ std::vector<int> rules_of_patches(Boundary const& boundary, std::vector<MotionRu
   std::vector<int> out(boundary.patches().size(), -1);
   for (std::size_t r = 0; r < rules.size(); ++r)
     for (std::string const& selector : rules[r].patches)
-      for (int const p : boundary.select(selector).patches) out[std::size_t(p)] = int(r);
+      for (int const p : boundary.select(selector).patches) out[p] = int(r);
   return out;
 }
 
@@ -71,10 +71,9 @@ Clearances::Tip Clearances::tip(ClearanceCase const& one, std::vector<int> const
                                   place_tolerance(1e-7, boundary_.size(), boundary_.precision().resolution()))});
   // Nodes slide on a wall that slips, and those of a blade may be off it: the wall itself stays.
   out.wall_moves = std::any_of(walls.begin(), walls.end(), [&](int p) {
-    int const r = rule_of_patch[std::size_t(p)];
-    return r >= 0 && (case_file_.timed[std::size_t(r)].at ||
-                      std::holds_alternative<AttachedRule>(case_file_.motion.rules[std::size_t(r)].rule) ||
-                      std::holds_alternative<CarryRule>(case_file_.motion.rules[std::size_t(r)].rule));
+    int const r = rule_of_patch[p];
+    return r >= 0 && (case_file_.timed[r].at || std::holds_alternative<AttachedRule>(case_file_.motion.rules[r].rule) ||
+                      std::holds_alternative<CarryRule>(case_file_.motion.rules[r].rule));
   });
   out.before = revolution(out, baseline());
   if (!out.before) {
@@ -82,9 +81,8 @@ Clearances::Tip Clearances::tip(ClearanceCase const& one, std::vector<int> const
   } else if (out.wall_moves) {
     out.before_as_surface = surface(out, baseline());
   }
-  int const r = rule_of_patch[std::size_t(tips.front())];
-  bool const one_rule =
-      std::all_of(tips.begin(), tips.end(), [&](int p) { return rule_of_patch[std::size_t(p)] == r; });
+  int const r = rule_of_patch[tips.front()];
+  bool const one_rule = std::all_of(tips.begin(), tips.end(), [&](int p) { return rule_of_patch[p] == r; });
   out.rule = one_rule ? r : -1;
   if (out.before->measure() == ClearanceMeasure::meridional) {
     double sum = 0;

@@ -61,7 +61,7 @@ struct Moved {
 Moved moved_by(MeshForMessages const& mesh, MotionRule const& rule, Coordinates const& morphed) {
   Moved out;
   for (int const p : patches_of(mesh, rule))
-    for (Index const n : mesh.patch_nodes.at(std::size_t(p))) {
+    for (Index const n : mesh.patch_nodes.at(p)) {
       out.box.add(mesh.baseline[n]);
       out.largest = std::max(out.largest, distance(mesh.baseline[n], morphed[n]));
     }
@@ -109,7 +109,7 @@ MeshForMessages for_messages(Mesh const& mesh) {
   for (Patch const& patch : mesh.patches) {
     out.patch_names.push_back(name_of(patch));
     auto& nodes = out.patch_nodes.emplace_back();
-    for_each_node(mesh.zones[std::size_t(patch.zone)], patch.range, [&](Index n) { nodes.push_back(n); });
+    for_each_node(mesh.zones[patch.zone], patch.range, [&](Index n) { nodes.push_back(n); });
   }
   return out;
 }

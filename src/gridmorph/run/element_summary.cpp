@@ -25,13 +25,13 @@ std::string types_text(Mesh const& mesh, int zone) {
   auto const count = count_types(mesh, zone);
   std::string out;
   for (int t = 0; t < n_element_types; ++t) {
-    if (count[std::size_t(t)] == 0) continue;
+    if (count[t] == 0) continue;
     std::string name(to_string(ElementType(t)));
-    if (count[std::size_t(t)] != 1)
+    if (count[t] != 1)
       name = name == "prism" || name == "pyramid" ? name + "s"
              : name.ends_with("hedron")           ? name.substr(0, name.size() - 2) + "a"
                                                   : name + "s";
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count[std::size_t(t)], name);
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count[t], name);
   }
   return out;
 }
@@ -124,8 +124,8 @@ std::string inspect_elements_text(LoadedMesh const& loaded, MeshSummary const& s
   for (auto const& c : mesh.connections)
     text +=
         fmt::format("  {} (zone {} to zone {}): {} pairs of nodes, at most {:.3g} apart{}\n", c.name,
-                    mesh.zones[std::size_t(c.zone)].name, mesh.zones[std::size_t(c.donor_zone)].name, c.nodes.size(),
-                    largest_mismatch(mesh, c), c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
+                    mesh.zones[c.zone].name, mesh.zones[c.donor_zone].name, c.nodes.size(), largest_mismatch(mesh, c),
+                    c.periodic ? "; " + periodic_text(describe_connection(mesh, c)) : "");
   text += list_text("Notes of the reader", loaded.notes());
   text += list_text("Remarks", loaded.remarks());
   text += list_text("Problems that stop a morph", loaded.problems());
@@ -144,7 +144,7 @@ nlohmann::json inspect_elements_json(LoadedMesh const& loaded, MeshSummary const
     auto const count = count_types(mesh, zone);
     nlohmann::json out = nlohmann::json::object();
     for (int t = 0; t < n_element_types; ++t)
-      if (count[std::size_t(t)] > 0) out[std::string(to_string(ElementType(t)))] = count[std::size_t(t)];
+      if (count[t] > 0) out[std::string(to_string(ElementType(t)))] = count[t];
     return out;
   };
   nlohmann::json json{
@@ -180,7 +180,7 @@ nlohmann::json inspect_elements_json(LoadedMesh const& loaded, MeshSummary const
                                   {"families", patch.families},
                                   {"kind", to_string(patch.kind)},
                                   {"bc_type", patch.bc_type},
-                                  {"zone", mesh.zones[std::size_t(patch.zone)].name},
+                                  {"zone", mesh.zones[patch.zone].name},
                                   {"faces", loaded.indexed().face_patches().faces_of_patch[p]},
                                   {"nodes", nodes.size()},
                                   {"box", box_json(box_of(mesh, nodes))}});
@@ -188,8 +188,8 @@ nlohmann::json inspect_elements_json(LoadedMesh const& loaded, MeshSummary const
   json["connections"] = nlohmann::json::array();
   for (auto const& c : mesh.connections) {
     nlohmann::json entry{{"name", c.name},
-                         {"zone", mesh.zones[std::size_t(c.zone)].name},
-                         {"donor_zone", mesh.zones[std::size_t(c.donor_zone)].name},
+                         {"zone", mesh.zones[c.zone].name},
+                         {"donor_zone", mesh.zones[c.donor_zone].name},
                          {"pairs", c.nodes.size()},
                          {"largest_mismatch", largest_mismatch(mesh, c)}};
     if (c.periodic)
@@ -212,9 +212,9 @@ void measure_heights(IndexedMesh const& loaded, std::vector<int> const& boundary
   std::vector<Index> count(boundaries.size(), 0);
   Vec3 const up = plane_normal(mesh);
   for (Index f = 0; f < faces.size(); ++f) {
-    int const patch = loaded.face_patches().patch[std::size_t(f)];
+    int const patch = loaded.face_patches().patch[f];
     if (patch < 0) continue;
-    auto const b = std::size_t(boundary_of_patch[std::size_t(patch)]);
+    auto const b = std::size_t(boundary_of_patch[patch]);
     auto const face = faces.nodes[f];
     Vec3 const origin = mesh.coordinates[face[0]];
     Vec3 normal = mesh.dimension == 2 ? cross(mesh.coordinates[face[1]] - origin, up) : Vec3{};
@@ -224,7 +224,7 @@ void measure_heights(IndexedMesh const& loaded, std::vector<int> const& boundary
     if (!(length > 0)) continue;
     double height = 0;
     int opposite = 0;
-    for (Index32 const n : mesh.elements.corners(faces.element[std::size_t(f)])) {
+    for (Index32 const n : mesh.elements.corners(faces.element[f])) {
       if (std::find(face.begin(), face.end(), n) != face.end()) continue;
       height += std::fabs(dot(mesh.coordinates[n] - origin, normal)) / length;
       ++opposite;
@@ -264,7 +264,7 @@ void join_by_position(Mesh const& mesh, std::vector<BoundarySummary> const& boun
     return a.low.x > b.high.x + tolerance || b.low.x > a.high.x + tolerance || a.low.y > b.high.y + tolerance ||
            b.low.y > a.high.y + tolerance || a.low.z > b.high.z + tolerance || b.low.z > a.high.z + tolerance;
   };
-  auto const zone_of = [&](std::size_t b) { return mesh.patches[std::size_t(boundaries[b].patches.front())].zone; };
+  auto const zone_of = [&](std::size_t b) { return mesh.patches[boundaries[b].patches.front()].zone; };
   constexpr std::size_t most = 64;  // pairs of boundaries are looked at
   for (std::size_t a = 0; a < std::min(most, nodes.size()); ++a)
     for (std::size_t b = a + 1; b < std::min(most, nodes.size()); ++b) {
@@ -292,7 +292,7 @@ MeshSummary summarize_elements(LoadedMesh const& loaded) {
   std::vector<std::vector<Index>> nodes_of_boundary;
   std::vector<int> boundary_of_patch;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    auto const& patch = mesh.patches[std::size_t(p)];
+    auto const& patch = mesh.patches[p];
     using Source = BoundarySummary::Source;
     std::string const& selector = patch.families.empty() ? patch.name : patch.families.front();
     Source const source = !patch.families.empty()               ? Source::family
@@ -317,15 +317,15 @@ MeshSummary summarize_elements(LoadedMesh const& loaded) {
     once(found->names, patch.name);
     if (!patch.bc_type.empty()) once(found->bc_types, patch.bc_type);
     found->patches.push_back(p);
-    found->faces += loaded.indexed().face_patches().faces_of_patch[std::size_t(p)];
+    found->faces += loaded.indexed().face_patches().faces_of_patch[p];
     auto const nodes = patch_nodes(patch);
     found->nodes += Index(nodes.size());
     auto& points = shapes[b].patches.emplace_back();
     for (Index32 const n : nodes) {
       points.push_back(mesh.coordinates[n]);
       found->box.add(points.back());
-      nodes_of_boundary[b].push_back(representative[std::size_t(n)]);
-      found->paired = found->paired && periodic[std::size_t(n)] != 0;
+      nodes_of_boundary[b].push_back(representative[n]);
+      found->paired = found->paired && periodic[n] != 0;
     }
   }
   join_by_position(mesh, out.boundaries, nodes_of_boundary);

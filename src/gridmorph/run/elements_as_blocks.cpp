@@ -53,8 +53,8 @@ bool may_have_blocks(Mesh const& elements) {
 
 ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elements.mesh()) {
   if (int const inner = inner_patch(elements); inner >= 0) {
-    why_none_ = fmt::format("{}: patch '{}' has faces inside the mesh", elements_.source,
-                            elements_.patches[std::size_t(inner)].name);
+    why_none_ =
+        fmt::format("{}: patch '{}' has faces inside the mesh", elements_.source, elements_.patches[inner].name);
     return;
   }
   FoundBlocks found = find_blocks(HostInstance(), elements_, elements.topology(), elements.face_patches());
@@ -79,7 +79,7 @@ ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elem
   element_ = std::move(found.element);
   Index first_cell = 0;
   for (Zone const& block : blocks_.zones) {
-    zone_of_block_.push_back(elements_.zone_of_element(element_[std::size_t(first_cell)]));
+    zone_of_block_.push_back(elements_.zone_of_element(element_[first_cell]));
     first_cell += Index(block.extent[0] - 1) * (block.extent[1] - 1) * (block.extent[2] - 1);
   }
   block_node_ = std::move(found.in_blocks);
@@ -94,7 +94,7 @@ Coordinates ElementsAsBlocks::coordinates(Coordinates const& of_blocks) const {
   Coordinates const& x = elements_.coordinates;
   Coordinates out(x.size());
   for (Index n = 0; n < x.size(); ++n) {
-    Index32 const b = block_node_[std::size_t(n)], r = b < 0 ? Index32(n) : node_[std::size_t(b)];
+    Index32 const b = block_node_[n], r = b < 0 ? Index32(n) : node_[b];
     // Nodes that are one may be apart by a rounding: they move alike.
     Vec3 moved = b < 0 ? x[n] : r == n ? of_blocks[b] : x[n] + (of_blocks[b] - x[r]);
     if (across_ == 0) moved.x = x[n].x;
@@ -110,13 +110,13 @@ OutputFields ElementsAsBlocks::fields(OutputFields const& of_blocks) const {
   out.displacement = of_blocks.displacement;
   for (CellField const& field : of_blocks.cells) {
     CellField& own = out.cells.emplace_back(field);
-    for (std::size_t c = 0; c < element_.size(); ++c) own.values[std::size_t(element_[c])] = field.values[c];
+    for (std::size_t c = 0; c < element_.size(); ++c) own.values[element_[c]] = field.values[c];
   }
   for (NodeField const& field : of_blocks.nodes) {
     NodeField& own = out.nodes.emplace_back(field);
     own.values.assign(block_node_.size(), 0);
     for (std::size_t n = 0; n < block_node_.size(); ++n)
-      if (block_node_[n] >= 0) own.values[n] = field.values[std::size_t(block_node_[n])];
+      if (block_node_[n] >= 0) own.values[n] = field.values[block_node_[n]];
   }
   return out;
 }

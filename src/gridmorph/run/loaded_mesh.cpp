@@ -86,7 +86,7 @@ Mesh in_order(Mesh mesh) {
 std::vector<int> measured_walls(Mesh const& mesh, NearCells const& near) {
   std::set<int> walls(near.walls.begin(), near.walls.end());
   for (int p = 0; p < int(mesh.patches.size()); ++p)
-    if (mesh.patches[std::size_t(p)].kind == PatchKind::wall) walls.insert(p);
+    if (mesh.patches[p].kind == PatchKind::wall) walls.insert(p);
   return {walls.begin(), walls.end()};
 }
 
@@ -113,7 +113,7 @@ PatchesAsSurface surface_of_blocks(Mesh const& mesh, std::vector<int> const& pat
   }
   Index facets = 0;
   for (int const p : patches) {
-    IndexRange const& r = mesh.patches[std::size_t(p)].range;
+    IndexRange const& r = mesh.patches[p].range;
     Index cells = 1;
     for (int axis = 0; axis < 3; ++axis) cells *= std::max(1, r.extent(axis) - 1);
     facets += 2 * cells * split * split;
@@ -135,7 +135,7 @@ PatchesAsSurface surface_of_elements(IndexedMesh const& indexed, std::vector<int
     Boundary const boundary = indexed.boundary();
     std::vector<Index32> nodes;
     for (int const p : patches)
-      for (Index const n : boundary.surface(p).nodes) nodes.push_back(representative[std::size_t(n)]);
+      for (Index const n : boundary.surface(p).nodes) nodes.push_back(representative[n]);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     for (Index32 const n : nodes) out.nodes.push_back(mesh.coordinates[n]);
@@ -147,8 +147,7 @@ PatchesAsSurface surface_of_elements(IndexedMesh const& indexed, std::vector<int
     throw ConfigError("--split cuts the quadrilaterals of structured meshes; leave it out for an unstructured one");
   auto const& boundary = indexed.topology().boundary;
   for (Index f = 0; f < boundary.size(); ++f) {
-    if (std::find(patches.begin(), patches.end(), indexed.face_patches().patch[std::size_t(f)]) == patches.end())
-      continue;
+    if (std::find(patches.begin(), patches.end(), indexed.face_patches().patch[f]) == patches.end()) continue;
     auto const face = boundary.nodes[f];
     int const first = int(out.facets.points.size());
     for (Index32 const n : face) out.facets.points.push_back(mesh.coordinates[n]);

@@ -112,14 +112,14 @@ void collect_interfaces(Mesh const& mesh, double size, MeshSummary& out) {
   Problems ignored;
   Links const links = connect(mesh, any, ignored);
   auto const describe = [&](int number) {
-    auto const& interface = mesh.interfaces[std::size_t(number)];
+    auto const& interface = mesh.interfaces[number];
     for (auto const& link : links.all)
       if (link.interface == number && link.zone == interface.zone && link.range == interface.range)
         return describe_periodic(*interface.periodic, link.mismatch < gross * size ? &link.transform : nullptr, size);
     return describe_periodic(*interface.periodic, nullptr, size);
   };
   for (int n = 0; n < out.interfaces; ++n) {
-    auto const& interface = mesh.interfaces[std::size_t(n)];
+    auto const& interface = mesh.interfaces[n];
     if (!interface.periodic) {
       if (interface.zone == interface.donor_zone) ++out.self_interfaces;
       continue;
@@ -174,11 +174,11 @@ std::vector<std::vector<Index>> nodes_of(Mesh const& mesh, std::vector<BoundaryS
   for (auto const& b : boundaries) {
     auto& nodes = out.emplace_back();
     for (int const p : b.patches) {
-      Patch const& patch = mesh.patches[std::size_t(p)];
-      Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+      Patch const& patch = mesh.patches[p];
+      Zone const& zone = mesh.zones[patch.zone];
       bool inside = true;
       for (int a = 0; a < 3; ++a) inside = inside && patch.range.begin[a] >= 0 && patch.range.end[a] <= zone.extent[a];
-      if (inside) for_each_node(zone, patch.range, [&](Index n) { nodes.push_back(number[std::size_t(n)]); });
+      if (inside) for_each_node(zone, patch.range, [&](Index n) { nodes.push_back(number[n]); });
     }
   }
   return out;
@@ -262,7 +262,7 @@ void find_touching(std::vector<BoundarySummary>& boundaries, std::vector<std::ve
     auto const end = std::find_if(begin, places.end(), [&](auto const& p) { return p.first != begin->first; });
     for (auto a = begin; a != end; ++a)
       for (auto b = begin; b != end; ++b)
-        if (a != b) touches[std::size_t(a->second)].insert(b->second);
+        if (a != b) touches[a->second].insert(b->second);
     begin = end;
   }
   for (std::size_t b = 0; b < boundaries.size(); ++b)

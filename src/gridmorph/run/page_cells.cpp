@@ -51,7 +51,7 @@ void take_sample(PageMeshes const& meshes, page::PictureMesh const& mesh, Sample
   NearCells const& near = meshes.near;
   Index const n_cells = mesh.n_cells();
   if (take_kept(meshes, out)) {
-    out.near.assign(std::size_t(n_cells), 0);
+    out.near.assign(n_cells, 0);
     for (std::size_t n = 0; n < near.cells.extent(0); ++n) out.near[n] = near.cells(n) != 0 ? 1 : 0;
     return;
   }

@@ -22,16 +22,16 @@ Cut plane_mesh_cut(Coordinates const& at) {
   std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (Index n = 0; n < at.size(); ++n)
     for (int d = 0; d < 3; ++d) {
-      low[std::size_t(d)] = std::min(low[std::size_t(d)], component(at[n], d));
-      high[std::size_t(d)] = std::max(high[std::size_t(d)], component(at[n], d));
+      low[d] = std::min(low[d], component(at[n], d));
+      high[d] = std::max(high[d], component(at[n], d));
     }
   int thin = 2;
   for (int d = 1; d >= 0; --d)
-    if (high[std::size_t(d)] - low[std::size_t(d)] < high[std::size_t(thin)] - low[std::size_t(thin)]) thin = d;
+    if (high[d] - low[d] < high[thin] - low[thin]) thin = d;
   int const a = thin == 0 ? 1 : 0, b = thin == 2 ? 1 : 2;
   Cut cut;
   cut.title = "The mesh";
-  cut.labels = {names[std::size_t(a)], names[std::size_t(b)]};
+  cut.labels = {names[a], names[b]};
   cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
   return cut;
 }
@@ -160,8 +160,8 @@ std::vector<Cut> plane_cuts(page::Surface const& surface, std::vector<Vec3> cons
     double const at = component(middle, d) / weight;
     int const a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
     Cut cut;
-    cut.title = fmt::format("{} = {:.4g}", names[std::size_t(d)], at);
-    cut.labels = {names[std::size_t(a)], names[std::size_t(b)]};
+    cut.title = fmt::format("{} = {:.4g}", names[d], at);
+    cut.labels = {names[a], names[b]};
     cut.levels = [d, at](Coordinates const& nodes, std::span<double> level) {
       double const* const x = (d == 0 ? nodes.x : d == 1 ? nodes.y : nodes.z).data();
       for (std::size_t n = 0; n < level.size(); ++n) level[n] = x[n] - at;

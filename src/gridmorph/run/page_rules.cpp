@@ -65,8 +65,7 @@ PatchRoles roles_of(BoundaryMotion const& rules, std::size_t n_patches) {
     PatchKind const kind = rules.boundary().patches()[p].kind;
     bool const body = kind == PatchKind::wall || kind == PatchKind::other;
     int const r = motion.patch[p].rule;
-    bool const moves =
-        r >= 0 && rules.is_explicit(r) && !std::holds_alternative<FixedRule>(motion.rules[std::size_t(r)].rule);
+    bool const moves = r >= 0 && rules.is_explicit(r) && !std::holds_alternative<FixedRule>(motion.rules[r].rule);
     if (body && moves)
       out.wall[p] = 1;
     else if (kind == PatchKind::wall)
@@ -88,9 +87,9 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
     std::vector<Index> nodes;
     bool by_default = none;
     for (int p = 0; p < int(motion.patch.size()) && !none; ++p) {
-      if (motion.patch[std::size_t(p)].rule != r) continue;
-      by_default = motion.patch[std::size_t(p)].by_default;
-      names.push_back(label_of(boundary.patches()[std::size_t(p)]));
+      if (motion.patch[p].rule != r) continue;
+      by_default = motion.patch[p].by_default;
+      names.push_back(label_of(boundary.patches()[p]));
       auto const& of = boundary.surface(p).nodes;
       nodes.insert(nodes.end(), of.begin(), of.end());
     }
@@ -101,9 +100,9 @@ std::vector<page::RuleRow> rule_rows(BoundaryMotion const& rules, Coordinates co
     }
     if (names.empty()) continue;
     page::RuleRow row = row_of(std::move(nodes), baseline, morphed);
-    row.rule = none ? "free, both sides as one" : text_of_rule(motion.rules[std::size_t(r)].rule);
+    row.rule = none ? "free, both sides as one" : text_of_rule(motion.rules[r].rule);
     row.patches = listed_names(std::move(names));
-    row.where = by_default ? "default" : motion.rules[std::size_t(r)].where;
+    row.where = by_default ? "default" : motion.rules[r].where;
     out.push_back(std::move(row));
   }
   return out;
@@ -124,7 +123,7 @@ page::BoundaryCheck boundary_check(BoundaryMotion const& rules, Coordinates cons
   }
   for (int p = 0; p < int(boundary.patches().size()); ++p)
     rules.each_slip_surface(p, [&](int s, std::vector<Index> const& nodes) {
-      auto const view = rules.slip_surfaces()[std::size_t(s)].view();
+      auto const view = rules.slip_surfaces()[s].view();
       for (Index const n : nodes) {
         ++out.slip_nodes;
         if (norm(u(n)) > 0) out.slip = std::max(out.slip, distance_from(view, baseline[n], morphed[n]));

@@ -41,10 +41,10 @@ std::string shape(UnstructuredReport const& r) {
   int sliding = 0, along = 0;
   for (int axis = 0; axis < r.wrap->dimension; ++axis)
     for (int const side : {0, 1}) {
-      auto const is = r.wrap->domain.side[std::size_t(axis)][std::size_t(side)];
+      auto const is = r.wrap->domain.side[axis][side];
       bool const slides = r.wrap->slides(axis, side);
       sliding += slides ? 1 : 0;
-      bool const reached = r.wrap->reaches[std::size_t(axis)][std::size_t(side)];
+      bool const reached = r.wrap->reaches[axis][side];
       along += !slides && is != ChartedDomain::Side::open && (is != ChartedDomain::Side::stands || reached) ? 1 : 0;
     }
   for (auto const& [count, what] : {std::pair(sliding, "on which nodes slide"), std::pair(along, "that go along")})

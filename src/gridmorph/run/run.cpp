@@ -270,7 +270,7 @@ std::vector<TipClearance> Run::clearances(Moment const* when) const {
   if (!clearances_) clearances_.emplace(case_file_, mesh_->boundary());
   auto const by_rule = [&](int r, std::span<Index const> nodes, std::span<Vec3> u) {
     if (r < 0) return false;
-    Rule const& rule = motion.rules[std::size_t(r)].rule;
+    Rule const& rule = motion.rules[r].rule;
     std::vector<Vec3> at;
     for (Index const n : nodes) at.push_back(mesh_->coordinates()[n]);
     if (auto const* function = std::get_if<FunctionRule>(&rule)) {

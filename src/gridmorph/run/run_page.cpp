@@ -314,8 +314,7 @@ std::vector<float> RunPage::determinants_of(PageMeshes const& meshes, std::vecto
   std::vector<float> out;
   out.reserve(cells.size());
   for (Index const cell : cells)
-    out.push_back(
-        float(values != nullptr ? (*values)[std::size_t(cell)] : pictures_->measures(cell, at).determinant_3x3x3));
+    out.push_back(float(values != nullptr ? (*values)[cell] : pictures_->measures(cell, at).determinant_3x3x3));
   return out;
 }
 

@@ -139,7 +139,7 @@ class Sequence {
 
   void make_step(int step) {
     std::string const count = fmt::format(", {} steps", options_.steps);
-    Moment const& moment = moments_[std::size_t(step)];
+    Moment const& moment = moments_[step];
     part_.lap();
     relaxed_ = std::max(relaxed_, run_.morph(&moment).before);
     add_time(run_.times, "morph" + count, part_.lap(), false);
@@ -159,7 +159,7 @@ class Sequence {
     auto& steps = sequence_.steps;
     auto& now = steps.emplace_back(SequenceStep{options_.time_at(step)});
     now.passages = {morphed_step(largest_displacement(run_.mesh().coordinates(), run_.morphed()), run_.quality(),
-                                 run_.clearances(&moments_[std::size_t(step)]))};
+                                 run_.clearances(&moments_[step]))};
     for (auto const& s : run_.shortfalls_of(run_.quality()))
       if (s.severity == Shortfall::Severity::failure) now.failures.push_back(s.message);
     inverted_ = inverted_ || now.newly_inverted() > 0;

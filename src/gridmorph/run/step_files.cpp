@@ -74,7 +74,7 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
 void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options) {
   int done = 0;
   try {
-    for (; done < int(files.size()); ++done) files[std::size_t(done)].commit();
+    for (; done < int(files.size()); ++done) files[done].commit();
   } catch (MachineError const&) {
     for (int step = 0; step < done; ++step) std::remove(step_path(options, step).c_str());
     throw;

@@ -25,8 +25,8 @@ PatchRoles roles_of_passage(Mesh const& mesh, Motion const& motion) {
     if (!moves_by_itself(rule.rule)) continue;
     try {
       for (int const p : select_patches(mesh, rule.patches)) {
-        PatchKind const kind = mesh.patches[std::size_t(p)].kind;
-        if (kind == PatchKind::wall || kind == PatchKind::other) out.wall[std::size_t(p)] = 1;
+        PatchKind const kind = mesh.patches[p].kind;
+        if (kind == PatchKind::wall || kind == PatchKind::other) out.wall[p] = 1;
       }
     } catch (MotionError const&) {  // of connections alone, which are no walls
     }

@@ -46,8 +46,8 @@ std::optional<WheelRows> numbered_as(WheelRows const& rows, WheelRows const& of_
   if (rows.rows.size() != of_elements.rows.size()) return {};
   std::vector<int> number(rows.rows.size(), -1);
   for (std::size_t z = 0; z < zone_of_block.size(); ++z) {
-    int const theirs = of_elements.row_of_zone[std::size_t(zone_of_block[z])];
-    int& own = number[std::size_t(rows.row_of_zone[z])];
+    int const theirs = of_elements.row_of_zone[zone_of_block[z]];
+    int& own = number[rows.row_of_zone[z]];
     if (own >= 0 && own != theirs) return {};
     own = theirs;
   }
@@ -59,7 +59,7 @@ std::optional<WheelRows> numbered_as(WheelRows const& rows, WheelRows const& of_
     taken[at] = true;
     out.rows[at] = rows.rows[r];
   }
-  for (int& row : out.row_of_zone) row = number[std::size_t(row)];
+  for (int& row : out.row_of_zone) row = number[row];
   return out;
 }
 
@@ -107,7 +107,7 @@ WheelMesh WheelPassage::wheel(std::vector<int> const& passages, WheelFamilies fa
   auto const place = node_places(sector.mesh());
   for (PassageLink& link : links.all)
     for (auto& pair : link.pairs)
-      for (Index& n : pair) n = place[std::size_t(n)];
+      for (Index& n : pair) n = place[n];
   return make_wheel_mesh(ordered, links, sector.rows, passages, families);
 }
 
@@ -122,7 +122,7 @@ PassagePlan::PassagePlan(WheelPassage const& passage, CaseFile const& case_file,
       motion_(mesh_.indexed(), passage.planned().links, rows_, setup.at(setup.moments.front()), setup.same_rules(),
               with_background(case_file, mesh_.mesh()), setup.blades,
               {case_file.sequence ? int(setup.moments.size()) : 0,
-               [&](int step) { return setup.at(setup.moments[std::size_t(step)]); }}),
+               [&](int step) { return setup.at(setup.moments[step]); }}),
       morpher_(std::in_place, Exec(), motion_.plan(), mesh_.coordinates()) {}
 
 void PassagePlan::morph(std::vector<Vec3> const& boundary, Coordinates& morphed) {
@@ -168,12 +168,11 @@ SmoothingMap const& PassagePlan::freeze_recorded() {
 /// The row of each node; rows of elements that touch, whose nodes at one place move as one, are one part.
 std::vector<int> PassagePlan::part_of_nodes() const {
   DisjointSets<int> parts(rows_.rows.size());
-  auto const row_of = [&](Index n) { return rows_.row_of_zone[std::size_t(mesh_.mesh().zone_of(n))]; };
+  auto const row_of = [&](Index n) { return rows_.row_of_zone[mesh_.mesh().zone_of(n)]; };
   std::vector<int> out;
   for (Index n = 0; n < mesh_.n_nodes(); ++n) out.push_back(row_of(n));
   if (auto const elements = PlanAccess::guarded_elements(motion_.plan()))
-    for (std::size_t n = 0; n < out.size(); ++n)
-      parts.join(out[n], out[std::size_t(elements->graph.representative[n])]);
+    for (std::size_t n = 0; n < out.size(); ++n) parts.join(out[n], out[elements->graph.representative[n]]);
   for (int& part : out) part = parts.root(part);
   return out;
 }

@@ -131,7 +131,7 @@ void WheelRun::check_wave() const {
 
 void WheelRun::move_to(int step) {
   if (step == step_) return;
-  plan_->move(setup_.at(setup_.moments[std::size_t(step)]));
+  plan_->move(setup_.at(setup_.moments[step]));
   step_ = step;
 }
 
@@ -142,7 +142,7 @@ void WheelRun::for_each_passage(PassagePlan& plan, Visit const& visit) {
     for (int p = 0; p < plan.passages().n_passages(); ++p)
       if (plan.passages().first_alike(p) == p) visit(plan.passages().boundary(p));
   }
-  plan.move(setup_.at(setup_.moments[std::size_t(step_)]));
+  plan.move(setup_.at(setup_.moments[step_]));
 }
 
 void WheelRun::find_lost_shapes(PassagePlan& plan) {
@@ -200,7 +200,7 @@ void WheelRun::retry() {
     }
   }
   if (!first.falls_short) return;
-  auto const at_worst = setup_.at(setup_.moments[std::size_t(worst_step)]);
+  auto const at_worst = setup_.at(setup_.moments[worst_step]);
   std::unique_ptr<CaseFile> trying;  // plans refer to theirs
   std::unique_ptr<PassagePlan> other;
   Retried retried = RecipeSearch{
@@ -383,7 +383,7 @@ RunDocument WheelRun::document(WheelMade const& made) const {
   for (std::size_t r = 0; r < in_file_.rows.rows.size(); ++r) {
     WheelRow const& row = in_file_.rows.rows[r];
     auto& told = out.wheel->rows.emplace_back(RowOfPassages{{}, setup_.blades[r].passages, row.passages, {}});
-    for (int const z : row.zones) told.zones.push_back(in_file_.mesh().zones[std::size_t(z)].name);
+    for (int const z : row.zones) told.zones.push_back(in_file_.mesh().zones[z].name);
     if (row.pitch.is_straight()) told.pitch = row.pitch.shift();
   }
   return out;
@@ -401,7 +401,7 @@ std::vector<std::string> WheelRun::blades_of(int passage) const {
   std::vector<std::string> out;
   for (std::size_t r = 0; r < in_file_.rows.rows.size(); ++r)
     if (in_file_.rows.rows[r].periodic() && passage < setup_.blades[r].passages)
-      out.push_back(setup_.motions[std::size_t(setup_.blades[r].blades[passage])].name);
+      out.push_back(setup_.motions[setup_.blades[r].blades[passage]].name);
   return out;
 }
 
@@ -424,7 +424,7 @@ std::vector<TipClearance> WheelRun::clearances_of(int passage, Coordinates const
   for (std::size_t t = 0; t < clearances_->size(); ++t) {
     auto const& tip = clearances_->nodes_of_tip(t);
     WheelRows const& rows = sector_.planned().rows;
-    auto const row = std::size_t(tip.empty() ? 0 : rows.row_of_zone[std::size_t(mesh_.zone_of(tip.front()))]);
+    auto const row = std::size_t(tip.empty() ? 0 : rows.row_of_zone[mesh_.zone_of(tip.front())]);
     if (passage >= setup_.blades[row].passages) continue;
     TipClearance found = clearances_->of(t, morphed, by_rule);
     auto const turned = rows.rows[row].pitch.times(passage);

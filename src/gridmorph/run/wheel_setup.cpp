@@ -85,7 +85,7 @@ class Setup {
     for (int r = 0; r < int(rows_.rows.size()); ++r)
       if (taken[r] == nullptr) (void)need_number(r, wheel_.rows.front().where);
     for (auto& row : out_.blades)
-      if (row.blades.empty()) row.blades.assign(std::size_t(row.passages), motion(-1, 1, {}, {}));
+      if (row.blades.empty()) row.blades.assign(row.passages, motion(-1, 1, {}, {}));
     problems_.throw_if_any<ConfigError>();
     stand_where_others_move();
     return std::move(out_);
@@ -162,7 +162,7 @@ class Setup {
     }
     if (diameters == 0) return;
     bool const moves = std::any_of(blades.blades.begin(), blades.blades.end(), [&](int m) {
-      auto const& one = out_.motions[std::size_t(m)];
+      auto const& one = out_.motions[m];
       for (std::size_t n = 0; n < one.timed.size(); ++n)
         if (one.timed[n].changes && is_of_blade(one.timed[n]) && is_in_row(one.motion.rules[n], r)) return true;
       return false;
@@ -177,7 +177,7 @@ class Setup {
   [[nodiscard]] bool is_in_row(MotionRule const& rule, int r) const {
     auto const patches = patches_of(mesh_, rule.patches);
     return std::any_of(patches.begin(), patches.end(),
-                       [&](int p) { return rows_.row_of_zone[mesh_.patches[std::size_t(p)].zone] == r; });
+                       [&](int p) { return rows_.row_of_zone[mesh_.patches[p].zone] == r; });
   }
 
   /// A wave of so many nodal diameters round the wheel.
@@ -304,7 +304,7 @@ std::vector<Motion> WheelSetup::at(Moment const& when) const {
 }
 
 Motion WheelSetup::at(int number, Moment const& when) const {
-  WheelBladeMotion const& m = motions[std::size_t(number)];
+  WheelBladeMotion const& m = motions[number];
   Motion out = m.motion;
   Moment const own{when.periods + m.ahead, when.time + m.ahead * period, when.step};
   for (std::size_t r = 0; r < m.timed.size(); ++r) {

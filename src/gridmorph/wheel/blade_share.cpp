@@ -93,7 +93,7 @@ class Row {
         for (int const n : face)
           if (n >= 0) {
             sets.join(face[0], n);
-            in_face[std::size_t(n)] = 1;
+            in_face[n] = 1;
           }
       // Blocks have a grid, and nodes amid edges are of no face.
       bool const whole = std::find(in_face.begin(), in_face.end(), 0) != in_face.end();

@@ -27,7 +27,7 @@ Pairs reversed(Pairs pairs) {
 
 PassageLinks by_zone(std::size_t n_zones, std::vector<PassageLink> all, double mesh_size) {
   PassageLinks out{std::move(all), std::vector<std::vector<int>>(n_zones), mesh_size};
-  for (std::size_t l = 0; l < out.all.size(); ++l) out.of_zone[std::size_t(out.all[l].zone)].push_back(int(l));
+  for (std::size_t l = 0; l < out.all.size(); ++l) out.of_zone[out.all[l].zone].push_back(int(l));
   return out;
 }
 
@@ -82,10 +82,10 @@ PassageLinks passage_links(Boundary const& boundary) {
 
 std::string describe(Mesh const& mesh, PassageLink const& link) {
   auto const all = connections_of(mesh);
-  std::string const name = all[std::size_t(link.connection)].name;
+  std::string const name = all[link.connection].name;
   return std::size_t(link.connection) < mesh.interfaces.size()
              ? "periodic interface '" + name + "' (" + describe_range(mesh, link.zone, link.range) + ")"
-             : "periodic connection '" + name + "' (zone '" + mesh.zones[std::size_t(link.zone)].name + "')";
+             : "periodic connection '" + name + "' (zone '" + mesh.zones[link.zone].name + "')";
 }
 
 }  // namespace gridmorph

@@ -91,7 +91,7 @@ class RowFinder {
   }
 
  private:
-  WheelRow& row_of(PassageLink const& link) { return out_.rows[std::size_t(out_.row_of_zone[link.zone])]; }
+  WheelRow& row_of(PassageLink const& link) { return out_.rows[out_.row_of_zone[link.zone]]; }
 
   void turns(std::size_t l, double angle, int passages) {
     PassageLink const& link = links_.all[l];
@@ -129,7 +129,7 @@ class RowFinder {
 
   void shifts(std::size_t l, Vec3 const& shift) {
     PassageLink const& link = links_.all[l];
-    Shifts& row = shifts_[std::size_t(out_.row_of_zone[link.zone])];
+    Shifts& row = shifts_[out_.row_of_zone[link.zone]];
     // As the first of the row: of two components that are as large round-off would choose anew for each.
     int const way = row.links == 0 ? way_of(shift) : (dot(shift, row.first) > 0 ? 1 : -1);
     out_.pitches_of_link[l] = way;
@@ -148,7 +148,7 @@ class RowFinder {
       Shifts const& shifts = shifts_[r];
       if (shifts.links == 0) continue;
       if (any_wheel_)
-        problems_.add("the row of zone '" + mesh_.zones[std::size_t(out_.rows[r].zones.front())].name +
+        problems_.add("the row of zone '" + mesh_.zones[out_.rows[r].zones.front()].name +
                       "' has periodic sides a shift by " + to_text(shifts.first, 6) +
                       " apart, and others of this mesh turn about the axis; make wheels "
                       "and straight rows of meshes of "

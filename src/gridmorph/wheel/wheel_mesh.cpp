@@ -101,7 +101,7 @@ class Builder {
   /// Per face of a patch of elements the periodic link of its zone on whose side it lies, or -1; of a patch of nodes
   /// one entry.
   [[nodiscard]] std::vector<int> sides_of(Patch const& patch) const {
-    std::vector<int> out(std::size_t(std::max<Index>(1, patch.faces.size())), -1);
+    std::vector<int> out(std::max<Index>(1, patch.faces.size()), -1);
     for (int const l : links_.of_zone[patch.zone]) {
       if (!links_.all[l].periodic) continue;
       std::vector<Index> side;
@@ -113,7 +113,7 @@ class Builder {
         });
       };
       for (Index f = 0; f < patch.faces.size(); ++f)
-        if (out[std::size_t(f)] < 0 && within(patch.faces[f])) out[std::size_t(f)] = l;
+        if (out[f] < 0 && within(patch.faces[f])) out[f] = l;
       if (patch.faces.size() == 0 && out.front() < 0 && within(patch.nodes)) out.front() = l;
     }
     return out;
@@ -128,7 +128,7 @@ class Builder {
     Patch out = patch;
     out.faces = {};
     for (Index f = 0; f < patch.faces.size(); ++f)
-      if (!between(sides[std::size_t(f)])) out.faces.add(patch.faces[f]);
+      if (!between(sides[f])) out.faces.add(patch.faces[f]);
     if (out.faces.size() == 0) return {};
     return out;
   }

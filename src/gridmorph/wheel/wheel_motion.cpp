@@ -23,7 +23,7 @@ void refuse_free_sides(Mesh const& sector, PassageLinks const& links, WheelRows 
   for (PassageLink const& link : links.all) {
     if (!link.periodic || open[rows.row_of_zone[link.zone]] == 0) continue;
     bool const all = std::all_of(link.pairs.begin(), link.pairs.end(), [&](auto const& pair) {
-      return std::binary_search(known.begin(), known.end(), graph.representative[std::size_t(pair[0])]);
+      return std::binary_search(known.begin(), known.end(), graph.representative[pair[0]]);
     });
     if (!all && reported.insert(link.connection).second) problems.add(no_rule_for_side(sector, link));
   }
@@ -76,12 +76,10 @@ void WheelMotion::plan_blocks(Asked const& asked) {
   detail::append_notes(notes_, made.plan.notes);
   requests_ = made.boundary;
   rotations_ = made.plan.rotations;
-  add_rules([&](int m) {
-    return std::make_shared<BoundaryMotion const>(boundary, resolve(sector, asked.motions[std::size_t(m)]));
-  });
+  add_rules([&](int m) { return std::make_shared<BoundaryMotion const>(boundary, resolve(sector, asked.motions[m])); });
   // Where nothing was opened the plan has the rules themselves: guards look for periodic sides that follow a blade.
   if (std::none_of(asked.open.begin(), asked.open.end(), [](char open) { return open != 0; }))
-    surface = rules_.at(same_rules_[used_.front()])->with(asked.motions[std::size_t(used_.front())]);
+    surface = rules_.at(same_rules_[used_.front()])->with(asked.motions[used_.front()]);
   plan_ = PlanAccess::of(std::move(opened.mesh), std::move(links), std::move(surface), std::move(made), asked.options);
 
   auto const nodes = plan_->boundary_nodes();
@@ -102,14 +100,13 @@ void WheelMotion::plan_elements(Asked const& asked) {
   refuse_free_sides(sector, asked.links, asked.rows, asked.open, graph, conditions.known);
 
   requests_ = conditions.requests;
-  add_rules([&](int m) {
-    return m == used_.front() ? conditions.motion : boundary_motion(conditions, asked.motions[std::size_t(m)]);
-  });
+  add_rules(
+      [&](int m) { return m == used_.front() ? conditions.motion : boundary_motion(conditions, asked.motions[m]); });
   std::vector<Index> const known(conditions.known.begin(), conditions.known.end());
   add_passages(asked, known,
                blade_shares(
                    conditions.motion->boundary(), asked.links, asked.rows, conditions.motion->motion(), asked.open,
-                   [&](Index n) { return Index(graph.representative[std::size_t(n)]); }, requests_, known));
+                   [&](Index n) { return Index(graph.representative[n]); }, requests_, known));
 
   auto most = largest_of(asked, options);
   plan_ = PlanAccess::of(sector, sector_.topology(), sector_.face_patches(), std::move(graph), std::move(conditions),

@@ -174,7 +174,7 @@ std::vector<PeriodicMatch> find_periodic(SurfaceCells& cells, double relative, s
 
   // Rotations may take cells that translations have, but are proposed by others: those of a box are of no interest.
   std::erase_if(seeds, [&](Seed const& s) { return !cells.is_open(s.cell); });
-  std::vector<std::uint8_t> shifted(std::size_t(cells.size()), 0);
+  std::vector<std::uint8_t> shifted(cells.size(), 0);
   for (auto const& match : out) {
     for (auto const& pair : match.pairs) shifted[pair.cell] = shifted[pair.other] = 1;
     set_open(cells, match.pairs, true);

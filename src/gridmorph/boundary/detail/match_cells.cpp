@@ -129,7 +129,7 @@ std::vector<CellPair> CellBins::match(RigidTransform const& t, bool identity, In
   for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return found[a].mismatch < found[b].mismatch; });
-  std::vector<std::uint8_t> used(std::size_t(cells_->size()), 0);
+  std::vector<std::uint8_t> used(cells_->size(), 0);
   std::vector<CellPair> out;
   for (auto const n : order) {
     CellPair const& p = found[n];

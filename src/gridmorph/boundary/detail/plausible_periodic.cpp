@@ -65,7 +65,7 @@ class Judge {
     Box box;
     for (Index c = 0; c < cells.size(); ++c) {
       CellShape const s = cells.shape(c);
-      if (open[std::size_t(c)] != 0 && !cells.on_plane_of_layer(c)) open_area_ += area_of(s).area;
+      if (open[c] != 0 && !cells.on_plane_of_layer(c)) open_area_ += area_of(s).area;
       for (Vec3 const& p : s.corner) box.include(p);
     }
     size_ = distance(box.low, box.high);
@@ -97,8 +97,8 @@ class Judge {
 
   [[nodiscard]] Sides look_at(PeriodicMatch const& m) const {
     Sides out;
-    std::vector<std::uint8_t> own(std::size_t(cells_.size()), 0);
-    for (auto const& pair : m.pairs) own[std::size_t(pair.cell)] = 1;
+    std::vector<std::uint8_t> own(cells_.size(), 0);
+    for (auto const& pair : m.pairs) own[pair.cell] = 1;
     std::map<int, Piece> here, there;  // by zone face
     double good = 0, outline = 0, cut = 0;
     out.radius_low = std::numeric_limits<double>::infinity();
@@ -133,7 +133,7 @@ class Judge {
   /// Adds the edges of a cell beyond which the side ends; `cut` those behind which open surface goes on smoothly.
   void measure_outline(Index cell, CellShape const& shape, CellArea const& area, std::vector<std::uint8_t> const& own,
                        double& outline, double& cut) const {
-    ZoneFace const& face = cells_.faces()[std::size_t(cells_.face_of(cell))];
+    ZoneFace const& face = cells_.faces()[cells_.face_of(cell)];
     int const a = int((cell - face.first) % face.nu), b = int((cell - face.first) / face.nu);
     constexpr std::array<std::array<int, 2>, 4> step{{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};  // beyond edge c, c + 1
     for (std::size_t c = 0; c < 4; ++c) {
@@ -141,9 +141,9 @@ class Judge {
       int const na = a + step[c][0], nb = b + step[c][1];
       bool const on_face = na >= 0 && na < face.nu && nb >= 0 && nb < face.nv;
       Index const next = on_face ? face.first + na + Index(face.nu) * nb : -1;
-      if (on_face && own[std::size_t(next)] != 0) continue;
+      if (on_face && own[next] != 0) continue;
       outline += length;
-      if (!on_face || open_[std::size_t(next)] == 0) continue;
+      if (!on_face || open_[next] == 0) continue;
       if (dot(area_of(cells_.shape(next)).inward, area.inward) > smooth) cut += length;
     }
   }

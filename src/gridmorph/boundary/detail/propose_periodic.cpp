@@ -60,7 +60,7 @@ class Proposals {
     Vec3 const centre = 0.5 * (probe_[0] + Vec3{probe_[1].x, probe_[2].y, probe_[3].z});
     for (RigidTransform const& way : {t, t.inverse()})
       if (int const known = find(way, way(centre)); known >= 0) {
-        ++all_[std::size_t(known)].votes;
+        ++all_[known].votes;
         return;
       }
     if (all_.size() >= most_proposals) return;
@@ -96,7 +96,7 @@ class Proposals {
         for (auto k = low[2]; k <= high[2]; ++k)
           if (auto const at = places_.find({i, j, k}); at != places_.end())
             for (int const p : at->second)
-              if (same(all_[std::size_t(p)].transform, t)) return p;
+              if (same(all_[p].transform, t)) return p;
     return -1;
   }
   [[nodiscard]] bool same(RigidTransform const& a, RigidTransform const& b) const {
@@ -127,7 +127,7 @@ std::optional<RigidTransform> translation_between(CellShape const& p, CellShape 
 bool may_turn(CellShape const& p, CellShape const& q, Turn turn) {
   std::vector<Vec3> const from(p.corner.begin(), p.corner.end());
   std::vector<Vec3> to;
-  for (int c = 0; c < 4; ++c) to.push_back(q.corner[std::size_t(turn.image(c))]);
+  for (int c = 0; c < 4; ++c) to.push_back(q.corner[turn.image(c)]);
   RigidTransform const t = fit_rigid_transform(from, to);
   if (!on_opposite_sides(transformed(p, t), q)) return false;
   auto const axis = as_turn(t, std::numeric_limits<double>::infinity());

@@ -27,7 +27,7 @@ SurfaceCells::SurfaceCells(Mesh const& mesh) : mesh_(&mesh), precision_(coordina
       }
   for (auto const& zone : mesh.zones)
     one_layer_ = one_layer_ && std::find(zone.extent.begin(), zone.extent.end(), 2) != zone.extent.end();
-  open_.assign(std::size_t(count), 1);
+  open_.assign(count, 1);
   for (auto const& patch : mesh.patches) claim(patch.zone, patch.range);
   for (auto const& interface : mesh.interfaces) {
     claim(interface.zone, interface.range);
@@ -80,7 +80,7 @@ CellShape SurfaceCells::shape(Index cell) const {
     out.inward += mesh_->coordinates[n + step] - out.corner[c];
     largest = std::max({largest, std::fabs(out.corner[c].x), std::fabs(out.corner[c].y), std::fabs(out.corner[c].z)});
   }
-  out.noise = round_off_steps * precision_[std::size_t(face.zone)].at(largest);
+  out.noise = round_off_steps * precision_[face.zone].at(largest);
   std::array<double, 4> length{};
   for (int c = 0; c < 4; ++c) length[c] = distance(out.corner[c], out.corner[(c + 1) % 4]);
   auto const zero = [&](int c) { return length[c] <= out.noise; };

@@ -126,7 +126,7 @@ void read_open_faces(TableReader& table, FfdRule& rule) {
                                               "k-min and k-max",
                                               name, suggestion(name, known)));
     else
-      rule.open[std::size_t(at - known.begin())] = true;
+      rule.open[at - known.begin()] = true;
   }
 }
 

@@ -31,7 +31,7 @@ std::vector<int> read_header(std::vector<std::string_view> const& cells, std::ve
     if (at == known.end())
       problems.add(fmt::format("{}: the header names a column '{}', which is none of {}{}", where, name.substr(0, 40),
                                joined(known, ", "), suggestion(name, known)));
-    else if (std::exchange(place[std::size_t(at - known.begin())], int(c)) >= 0)
+    else if (std::exchange(place[at - known.begin()], int(c)) >= 0)
       problems.add(fmt::format("{}: the header names column '{}' twice", where, name));
   }
   for (std::size_t k = 0; k < columns.size(); ++k)
@@ -48,7 +48,7 @@ std::optional<std::vector<double>> read_line(std::vector<std::string_view> const
   std::vector<double> values;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     NumberColumn const& column = columns[k];
-    std::string_view const cell = place[k] < 0 ? std::string_view() : cells[std::size_t(place[k])];
+    std::string_view const cell = place[k] < 0 ? std::string_view() : cells[place[k]];
     if (cell.empty() && column.when_empty) {
       values.push_back(*column.when_empty);
       continue;

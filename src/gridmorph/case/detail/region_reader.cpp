@@ -94,7 +94,7 @@ void read_nodes(TableReader& region, InnerRegion& out) {
         whole = false;
         break;
       }
-      corner[std::size_t(end)][a] = int(n) - 1;
+      corner[end][a] = int(n) - 1;
     }
   }
   table->finish();

@@ -267,7 +267,7 @@ std::function<double(Moment const&)> amplitude_table(std::vector<std::pair<doubl
   return [stations = std::move(stations), smooth](Moment const& when) {
     if (when.time <= stations.front().first) return stations.front().second;
     if (when.time >= stations.back().first) return stations.back().second;
-    auto const time = [&](int k) { return stations[std::size_t(k)].first; };
+    auto const time = [&](int k) { return stations[k].first; };
     std::size_t const n = std::size_t(piece_at(int(stations.size()), time, when.time));
     auto const [from, a] = stations[n];
     auto const [to, b] = stations[n + 1];

@@ -36,8 +36,8 @@ class BlockCells {
   }
   [[nodiscard]] CellNodes nodes(Index cell) const {
     int const z = zone(cell);
-    Zone const& of = mesh_.zones[std::size_t(z)];
-    Index const n = cell - first_[std::size_t(z)], ni = of.extent[0] - 1, nj = of.extent[1] - 1;
+    Zone const& of = mesh_.zones[z];
+    Index const n = cell - first_[z], ni = of.extent[0] - 1, nj = of.extent[1] - 1;
     auto const strides = of.strides();
     return {of.node({int(n % ni), int(n / ni % nj), int(n / (ni * nj))}), strides[1], strides[2]};
   }

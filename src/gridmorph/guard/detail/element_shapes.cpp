@@ -31,7 +31,7 @@ Ends ends_of(ElementType type, int corner) {
     case ElementType::hexahedron: {
       int const n = type == ElementType::prism ? 3 : 4, side = corner / n;
       out = around(corner % n, n);
-      for (int d = 0; d < 2; ++d) out[std::size_t(d)] = std::int8_t(out[std::size_t(d)] + n * side);
+      for (int d = 0; d < 2; ++d) out[d] = std::int8_t(out[d] + n * side);
       out[2] = std::int8_t(corner % n + n * (1 - side));
       return out;
     }
@@ -65,14 +65,12 @@ ElementShapes::ElementShapes(Mesh const& mesh, UnstructuredTopology const& topol
 }
 
 void ElementShapes::add_corners(Index32 element) {
-  ElementType const type = mesh_.elements.type[std::size_t(element)];
+  ElementType const type = mesh_.elements.type[element];
   if (type == ElementType::polyhedron) return add_corners_of_polyhedron(element);
   auto const nodes = mesh_.elements.corners(element);
   for (int c = 0; c < n_shape_corners(type); ++c) {
     Ends const ends = ends_of(type, c);
-    corners_.push_back({element,
-                        {nodes[std::size_t(c)], nodes[std::size_t(ends[0])], nodes[std::size_t(ends[1])],
-                         nodes[std::size_t(ends[2])]}});
+    corners_.push_back({element, {nodes[c], nodes[ends[0]], nodes[ends[1]], nodes[ends[2]]}});
   }
 }
 
@@ -102,14 +100,14 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
   std::vector<Index32> elements, place(std::size_t(mesh_.n_elements()), -1);
   for (Index32 const n : nodes_)
     for (Index32 const e : topology.elements_of_nodes[n])
-      if (place[std::size_t(e)] < 0) {
-        place[std::size_t(e)] = 0;
+      if (place[e] < 0) {
+        place[e] = 0;
         elements.push_back(e);
       }
   std::sort(elements.begin(), elements.end());
   std::vector<Index> first{0};  // corner of each of them
   for (std::size_t at = 0; at < elements.size(); ++at) {
-    place[std::size_t(elements[at])] = Index32(at);
+    place[elements[at]] = Index32(at);
     add_corners(elements[at]);
     element_of_corner_.resize(corners_.size(), Index32(at));
     first.push_back(Index(corners_.size()));
@@ -123,15 +121,14 @@ void ElementShapes::find_corners(UnstructuredTopology const& topology) {
   for (std::size_t p = 0; p + 1 < first_node_.size(); ++p) {
     found.clear();
     for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m) {
-      Index32 const node = nodes_[std::size_t(m)];
+      Index32 const node = nodes_[m];
       for (Index32 const e : topology.elements_of_nodes[node]) {
-        auto const at = std::size_t(place[std::size_t(e)]);
+        auto const at = std::size_t(place[e]);
         for (Index c = first[at]; c < first[at + 1]; ++c) {
-          auto const& of_corner = corners_[std::size_t(c)].node;
+          auto const& of_corner = corners_[c].node;
           unsigned roles = 0;
           for (unsigned k = 0; k < 4; ++k) roles |= of_corner[k] == node ? 1u << k : 0u;
-          if (roles != 0 && baseline_[std::size_t(c)].inverse_det != 0)
-            found.push_back({Index32(c), std::uint8_t(roles)});
+          if (roles != 0 && baseline_[c].inverse_det != 0) found.push_back({Index32(c), std::uint8_t(roles)});
         }
       }
     }
@@ -153,22 +150,20 @@ void ElementShapes::colour() {
   auto const for_each_element = [&](std::size_t p, auto const& visit) {
     Index32 last = -1;
     for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c)
-      if (Index32 const e = element_of_corner_[std::size_t(changes_[std::size_t(c)].corner)]; e != last)
-        visit(std::size_t(last = e));
+      if (Index32 const e = element_of_corner_[changes_[c].corner]; e != last) visit(std::size_t(last = e));
   };
   std::size_t const n_elements = element_of_corner_.empty() ? 0 : std::size_t(element_of_corner_.back()) + 1;
   std::vector<Index> first(n_elements + 1, 0);
   for (std::size_t p = 0; p < n_points; ++p) for_each_element(p, [&](std::size_t e) { ++first[e + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Index32> users(std::size_t(first.back()));
+  std::vector<Index32> users(first.back());
   std::vector<Index> next(first.begin(), first.end() - 1);
-  for (std::size_t p = 0; p < n_points; ++p)
-    for_each_element(p, [&](std::size_t e) { users[std::size_t(next[e]++)] = Index32(p); });
+  for (std::size_t p = 0; p < n_points; ++p) for_each_element(p, [&](std::size_t e) { users[next[e]++] = Index32(p); });
   std::vector<Index32> colour(n_points, -1), taken_by;
   for (std::size_t p = 0; p < n_points; ++p) {
     for_each_element(p, [&](std::size_t e) {
       for (Index u = first[e]; u < first[e + 1]; ++u)
-        if (Index32 const k = colour[std::size_t(users[std::size_t(u)])]; k >= 0) taken_by[std::size_t(k)] = Index32(p);
+        if (Index32 const k = colour[users[u]]; k >= 0) taken_by[k] = Index32(p);
     });
     std::size_t free = 0;
     while (free < taken_by.size() && taken_by[free] == Index32(p)) ++free;
@@ -197,20 +192,19 @@ void ElementShapes::move(Index32 point, double delta, double relaxation, Coordin
   auto const p = std::size_t(point);
   changes.clear();
   for (Index c = first_change_[p]; c < first_change_[p + 1]; ++c) {
-    Change const& at = changes_[std::size_t(c)];
+    Change const& at = changes_[c];
     Vec3 edge[3];
-    edges(corners_[std::size_t(at.corner)], x, edge);
+    edges(corners_[at.corner], x, edge);
     double share[3];
     for (int d = 0; d < 3; ++d) share[d] = double(at.roles >> (1 + d) & 1) - double(at.roles & 1);
-    changes.push_back(corner_change(baseline_[std::size_t(at.corner)], edge, share));
+    changes.push_back(corner_change(baseline_[at.corner], edge, share));
   }
   Coordinates const& before = mesh_.coordinates;
-  Index32 const own = nodes_[std::size_t(first_node_[p])];
+  Index32 const own = nodes_[first_node_[p]];
   make_shape_step(
       changes, x[own] - before[own], delta, relaxation, [](kernels::ShapeSum&) {}, [](Vec3 const& u) { return u; },
       [&](Vec3 const& u) {
-        for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m)
-          x.set(nodes_[std::size_t(m)], before[nodes_[std::size_t(m)]] + u);
+        for (Index m = first_node_[p]; m < first_node_[p + 1]; ++m) x.set(nodes_[m], before[nodes_[m]] + u);
       });
 }
 

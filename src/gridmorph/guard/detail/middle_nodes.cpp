@@ -19,12 +19,11 @@ void sort_unique(std::vector<Index32>& list) {
 
 /// Mean of the corners of the edge, face or element amid which node `at` of an element is.
 Vec3 mean_of_corners(Mesh const& mesh, Index32 element, int at, Coordinates const& x) {
-  ElementType const type = mesh.elements.type[std::size_t(element)];
+  ElementType const type = mesh.elements.type[element];
   auto const corners = mesh.elements.corners(element);
   int const edge = at - n_corners(type);
   if (edge < n_edges(type))
-    return 0.5 *
-           (x[corners[std::size_t(edge_corner(type, edge, 0))]] + x[corners[std::size_t(edge_corner(type, edge, 1))]]);
+    return 0.5 * (x[corners[edge_corner(type, edge, 0)]] + x[corners[edge_corner(type, edge, 1)]]);
   auto const mean = [&](std::span<Index32 const> nodes) {
     Vec3 sum;
     for (Index32 const n : nodes) sum += x[n];
@@ -46,24 +45,24 @@ MiddleNodes::MiddleNodes(Mesh const& mesh, GuardedElements const& plan, ElementT
                          std::vector<signed char> const& signs)
     : mesh_(mesh), plan_(plan), tables_(tables), signs_(signs) {
   auto const rows = std::size_t(plan_.middle.size());
-  std::vector<Index32> row_of_node(std::size_t(mesh.n_nodes()), -1);
-  for (std::size_t r = 0; r < rows; ++r) row_of_node[std::size_t(plan_.middle.target[r])] = Index32(r);
-  row_of_.resize(std::size_t(mesh.n_nodes()));
-  for (std::size_t n = 0; n < row_of_.size(); ++n) row_of_[n] = row_of_node[std::size_t(plan_.graph.representative[n])];
-  margin_before_.assign(std::size_t(mesh.n_elements()), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Index32> row_of_node(mesh.n_nodes(), -1);
+  for (std::size_t r = 0; r < rows; ++r) row_of_node[plan_.middle.target[r]] = Index32(r);
+  row_of_.resize(mesh.n_nodes());
+  for (std::size_t n = 0; n < row_of_.size(); ++n) row_of_[n] = row_of_node[plan_.graph.representative[n]];
+  margin_before_.assign(mesh.n_elements(), std::numeric_limits<double>::quiet_NaN());
   movable_.assign(rows, 1);
   slides_.assign(rows, -1);
   for (std::size_t k = 0; k < plan_.middle_on_boundary.size(); ++k) {
-    Index32 const row = row_of_node[std::size_t(plan_.middle_on_boundary[k])];
+    Index32 const row = row_of_node[plan_.middle_on_boundary[k]];
     if (row < 0) continue;
     if (plan_.middle_slots[k] >= 0)
-      movable_[std::size_t(row)] = 0;
+      movable_[row] = 0;
     else
-      slides_[std::size_t(row)] = Index32(k);
+      slides_[row] = Index32(k);
   }
   for (PeriodicImage const& image : plan_.images)
     for (Index32 const n : {image.node, image.owner})
-      if (Index32 const row = row_of_node[std::size_t(n)]; row >= 0) movable_[std::size_t(row)] = 0;
+      if (Index32 const row = row_of_node[n]; row >= 0) movable_[row] = 0;
   find_places();
 }
 
@@ -72,8 +71,7 @@ void MiddleNodes::find_places() {
     if (!tables_.is_curved(e)) continue;
     auto const nodes = mesh_.elements.nodes[e];
     for (std::size_t k = mesh_.elements.corners(e).size(); k < nodes.size(); ++k)
-      if (Index32 const row = row_of_[std::size_t(nodes[k])]; row >= 0)
-        places_.push_back({row, Index32(e), std::int8_t(k)});
+      if (Index32 const row = row_of_[nodes[k]]; row >= 0) places_.push_back({row, Index32(e), std::int8_t(k)});
   }
   std::stable_sort(places_.begin(), places_.end(), [](Place const& a, Place const& b) { return a.row < b.row; });
   first_place_.assign(movable_.size() + 1, 0);
@@ -81,7 +79,7 @@ void MiddleNodes::find_places() {
   for (std::size_t r = 0; r < movable_.size(); ++r) first_place_[r + 1] += first_place_[r];
   std::vector<std::pair<Index32, Index32>> copies;
   for (std::size_t k = 0; k < plan_.copies.size(); ++k)
-    if (Index32 const row = row_of_[std::size_t(plan_.copied[k])]; row >= 0) copies.emplace_back(row, plan_.copies[k]);
+    if (Index32 const row = row_of_[plan_.copied[k]]; row >= 0) copies.emplace_back(row, plan_.copies[k]);
   std::sort(copies.begin(), copies.end());
   std::vector<Index32> list;
   for (std::size_t r = 0, at = 0; r < movable_.size(); ++r) {
@@ -92,11 +90,11 @@ void MiddleNodes::find_places() {
 }
 
 double MiddleNodes::margin_at(CoordinateViews<Kokkos::HostSpace> const& x, Index32 e) const {
-  return kernels::curved_margin(tables_.curved(x, e), signs_[std::size_t(e)], tables_.plane_normal);
+  return kernels::curved_margin(tables_.curved(x, e), signs_[e], tables_.plane_normal);
 }
 
 bool MiddleNodes::straight_one_is_valid(CoordinateViews<Kokkos::HostSpace> const& x, Index32 e) const {
-  return kernels::jacobian_sign(tables_.type(e), tables_.corners(x, e), signs_[std::size_t(e)], tables_.plane_normal) ==
+  return kernels::jacobian_sign(tables_.type(e), tables_.corners(x, e), signs_[e], tables_.plane_normal) ==
          kernels::JacobianSign::positive;
 }
 
@@ -108,11 +106,11 @@ MiddleNodes::Verdict MiddleNodes::judge(std::vector<Index32> const& elements, do
   std::vector<One> found(elements.size());
   auto const now = views(x), before = views(mesh_.coordinates);
   for_all({}, "gridmorph::middle_nodes::margins", Index(elements.size()), [&](Index k) {
-    Index32 const e = elements[std::size_t(k)];
+    Index32 const e = elements[k];
     if (!tables_.is_curved(e)) return;
-    One& one = found[std::size_t(k)];
+    One& one = found[k];
     one.margin = margin_at(now, e);
-    double& was = margin_before_[std::size_t(e)];
+    double& was = margin_before_[e];
     if (std::isnan(was)) was = margin_at(before, e);
     one.broken = one.margin < (was > 0 ? share * was : was) && straight_one_is_valid(now, e);
   });
@@ -131,7 +129,7 @@ std::vector<Index32> MiddleNodes::rows_of(std::vector<Index32> const& elements) 
   for (Index32 const e : elements) {
     if (!tables_.is_curved(e)) continue;
     for (Index32 const n : mesh_.elements.nodes[e].subspan(mesh_.elements.corners(e).size()))
-      if (Index32 const row = row_of_[std::size_t(n)]; row >= 0 && movable_[std::size_t(row)] != 0) out.push_back(row);
+      if (Index32 const row = row_of_[n]; row >= 0 && movable_[row] != 0) out.push_back(row);
   }
   sort_unique(out);
   return out;
@@ -140,21 +138,20 @@ std::vector<Index32> MiddleNodes::rows_of(std::vector<Index32> const& elements) 
 std::vector<Index32> MiddleNodes::elements_of(std::vector<Index32> const& rows) const {
   std::vector<Index32> out;
   for (Index32 const r : rows)
-    for (Index p = first_place_[std::size_t(r)]; p < first_place_[std::size_t(r) + 1]; ++p)
-      out.push_back(places_[std::size_t(p)].element);
+    for (Index p = first_place_[r]; p < first_place_[r + 1]; ++p) out.push_back(places_[p].element);
   sort_unique(out);
   return out;
 }
 
 Vec3 MiddleNodes::on_surfaces(Index32 row, Vec3 const& place) const {
-  Index32 const k = slides_[std::size_t(row)];
+  Index32 const k = slides_[row];
   if (k < 0) return place;
   auto const surfaces = plan_.middle_surfaces[k];
-  Vec3 const baseline = mesh_.coordinates[plan_.middle.target[std::size_t(row)]];
+  Vec3 const baseline = mesh_.coordinates[plan_.middle.target[row]];
   std::vector<kernels::SlipSurfaceView> views;
   std::vector<double> own_offsets;
   for (Index32 const surface : surfaces) {
-    views.push_back(plan_.surfaces[std::size_t(surface)].view());
+    views.push_back(plan_.surfaces[surface].view());
     own_offsets.push_back(views.back().own_offset(baseline));
   }
   Vec3 u = place - baseline, unused;
@@ -164,7 +161,7 @@ Vec3 MiddleNodes::on_surfaces(Index32 row, Vec3 const& place) const {
 }
 
 void MiddleNodes::set(Index32 row, Vec3 const& place, Coordinates& x) const {
-  Index32 const n = plan_.middle.target[std::size_t(row)];
+  Index32 const n = plan_.middle.target[row];
   x.set(n, place);
   for (Index32 const copy : copies_[row]) x.set(copy, mesh_.coordinates[copy] + (place - mesh_.coordinates[n]));
 }
@@ -172,7 +169,7 @@ void MiddleNodes::set(Index32 row, Vec3 const& place, Coordinates& x) const {
 std::vector<Vec3> MiddleNodes::straight(std::vector<Index32> const& rows, Coordinates const& x) const {
   std::vector<Vec3> out;
   for (Index32 const r : rows) {
-    Place const& p = places_[std::size_t(first_place_[std::size_t(r)])];
+    Place const& p = places_[first_place_[r]];
     out.push_back(on_surfaces(r, mean_of_corners(mesh_, p.element, p.at, x)));
   }
   return out;
@@ -184,10 +181,10 @@ class MiddleNodes::Interpolation {
  public:
   Interpolation(MiddleNodes const& of, std::vector<Index32> const& region, Coordinates const& x)
       : of_(of), region_(region), x_(x), place_of_(of.movable_.size(), -1) {
-    for (std::size_t k = 0; k < region.size(); ++k) place_of_[std::size_t(region[k])] = Index32(k);
+    for (std::size_t k = 0; k < region.size(); ++k) place_of_[region[k]] = Index32(k);
     offset_.resize(region.size());
     each("gridmorph::middle_nodes::offsets", [&](Index k) {
-      if (edge_of(first(k)) >= 0) offset_[std::size_t(k)] = own_offset(first(k));
+      if (edge_of(first(k)) >= 0) offset_[k] = own_offset(first(k));
     });
     next_ = offset_;
   }
@@ -197,14 +194,14 @@ class MiddleNodes::Interpolation {
     for (bool const faces : {false, true})
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         each("gridmorph::middle_nodes::sweep", [&](Index k) {
-          if ((edge_of(first(k)) < 0) == faces) next_[std::size_t(k)] = mean_around(region_[std::size_t(k)]);
+          if ((edge_of(first(k)) < 0) == faces) next_[k] = mean_around(region_[k]);
         });
         std::swap(offset_, next_);
       }
     std::vector<Vec3> out(region_.size());
     each("gridmorph::middle_nodes::places", [&](Index k) {
-      Index32 const row = region_[std::size_t(k)];
-      out[std::size_t(k)] = of_.on_surfaces(row, place(first(k), row));
+      Index32 const row = region_[k];
+      out[k] = of_.on_surfaces(row, place(first(k), row));
     });
     return out;
   }
@@ -214,20 +211,18 @@ class MiddleNodes::Interpolation {
   void each(char const* label, Function const& f) const {
     for_all({}, label, Index(region_.size()), f);
   }
-  [[nodiscard]] Place const& first(Index k) const {
-    return of_.places_[std::size_t(of_.first_place_[std::size_t(region_[std::size_t(k)])])];
-  }
+  [[nodiscard]] Place const& first(Index k) const { return of_.places_[of_.first_place_[region_[k]]]; }
   [[nodiscard]] ElementType type(Place const& p) const { return of_.tables_.type(p.element); }
   /// Number of the edge amid which a node is, or -1.
   [[nodiscard]] int edge_of(Place const& p) const {
     int const edge = p.at - n_corners(type(p));
     return edge < n_edges(type(p)) ? edge : -1;
   }
-  [[nodiscard]] Index32 node(Place const& p) const { return of_.mesh_.elements.nodes[p.element][std::size_t(p.at)]; }
+  [[nodiscard]] Index32 node(Place const& p) const { return of_.mesh_.elements.nodes[p.element][p.at]; }
   /// In the region, or -1.
   [[nodiscard]] Index32 within(Place const& p) const {
-    Index32 const row = of_.row_of_[std::size_t(node(p))];
-    return row < 0 ? -1 : place_of_[std::size_t(row)];
+    Index32 const row = of_.row_of_[node(p)];
+    return row < 0 ? -1 : place_of_[row];
   }
   /// Where the nodes amid the edges put a node amid a face or the element; now: as they are, else where they go.
   [[nodiscard]] Vec3 completed(Place const& p, bool now) const {
@@ -235,7 +230,7 @@ class MiddleNodes::Interpolation {
     for (int k = 0; k < n_corners(c.type) + n_edges(c.type); ++k) {
       Place const at{-1, p.element, std::int8_t(k)};
       Index32 const moved = now || k < n_corners(c.type) ? -1 : within(at);
-      c.at[k] = moved < 0 ? x_[node(at)] : mean_of_corners(of_.mesh_, p.element, k, x_) + offset_[std::size_t(moved)];
+      c.at[k] = moved < 0 ? x_[node(at)] : mean_of_corners(of_.mesh_, p.element, k, x_) + offset_[moved];
     }
     kernels::curved::complete(c);
     return c.at[p.at];
@@ -245,10 +240,10 @@ class MiddleNodes::Interpolation {
   }
   [[nodiscard]] Vec3 offset(Place const& p) const {
     Index32 const k = within(p);
-    return k >= 0 ? offset_[std::size_t(k)] : own_offset(p);
+    return k >= 0 ? offset_[k] : own_offset(p);
   }
   [[nodiscard]] Vec3 place(Place const& p, Index32 row) const {
-    Vec3 const own = offset_[std::size_t(place_of_[std::size_t(row)])];
+    Vec3 const own = offset_[place_of_[row]];
     if (edge_of(p) >= 0) return mean_of_corners(of_.mesh_, p.element, p.at, x_) + own;
     Vec3 out = completed(p, false);
     if (type(p) != ElementType::hexahedron) return out;
@@ -260,8 +255,8 @@ class MiddleNodes::Interpolation {
   [[nodiscard]] Vec3 mean_around(Index32 row) const {
     Coordinates const& x = of_.mesh_.coordinates;
     kernels::OffsetMean out;
-    for (Index at = of_.first_place_[std::size_t(row)]; at < of_.first_place_[std::size_t(row) + 1]; ++at) {
-      Place const& p = of_.places_[std::size_t(at)];
+    for (Index at = of_.first_place_[row]; at < of_.first_place_[row + 1]; ++at) {
+      Place const& p = of_.places_[at];
       ElementType const t = type(p);
       auto const add = [&](int other, double share) {
         Place const there{-1, p.element, std::int8_t(other)};
@@ -270,7 +265,7 @@ class MiddleNodes::Interpolation {
       if (int const edge = edge_of(p); edge >= 0) {
         auto const way = [&](int e) {
           auto const corners = of_.mesh_.elements.corners(p.element);
-          return x[corners[std::size_t(edge_corner(t, e, 1))]] - x[corners[std::size_t(edge_corner(t, e, 0))]];
+          return x[corners[edge_corner(t, e, 1)]] - x[corners[edge_corner(t, e, 0)]];
         };
         for (int other = 0; other < n_edges(t); ++other)
           if (double const share = kernels::offset_share(t, edge, other, way(edge), way(other)); share > 0)
@@ -299,7 +294,7 @@ void MiddleNodes::pull_to(std::vector<Index32> const& rows, std::vector<Vec3> co
                           std::vector<Index32>& touched, Coordinates& x) {
   constexpr int steps = 8;
   std::vector<Vec3> from;
-  for (Index32 const r : rows) from.push_back(x[plan_.middle.target[std::size_t(r)]]);
+  for (Index32 const r : rows) from.push_back(x[plan_.middle.target[r]]);
   std::vector<std::uint8_t> gone(rows.size(), 0);
   std::vector<Index32> const around = elements_of(rows);
   Verdict const before = judge(around, share, x);
@@ -322,7 +317,7 @@ void MiddleNodes::pull_to(std::vector<Index32> const& rows, std::vector<Vec3> co
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (!better)
       set(rows[k], from[k], x);
-    else if (!(x[plan_.middle.target[std::size_t(rows[k])]] == from[k]))
+    else if (!(x[plan_.middle.target[rows[k]]] == from[k]))
       touched.push_back(rows[k]);
   now = better ? at : before;
 }

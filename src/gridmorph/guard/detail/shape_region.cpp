@@ -19,9 +19,9 @@ class RegionBuilder {
     grow(cells, rings);
     keep_collapsed();
     for (Index const node : reached_)
-      if (point_[std::size_t(node)] == reached && !points_.stays(node)) add_point(node);
+      if (point_[node] == reached && !points_.stays(node)) add_point(node);
     for (Index const cell : cells)
-      if (local_[std::size_t(cell)] < 0) region_.others.push_back(cell);
+      if (local_[cell] < 0) region_.others.push_back(cell);
     find_corners();
     colour();
     return std::move(region_);
@@ -33,8 +33,8 @@ class RegionBuilder {
   /// Marks the nodes of the cells and of the rings around them, with their copies.
   void grow(std::span<Index const> cells, int rings) {
     std::vector<Index> now(cells.begin(), cells.end()), next, found;
-    std::vector<std::uint8_t> taken(std::size_t(mesh_cells_.size()), 0);
-    for (Index const cell : now) taken[std::size_t(cell)] = 1;
+    std::vector<std::uint8_t> taken(mesh_cells_.size(), 0);
+    for (Index const cell : now) taken[cell] = 1;
     for (int ring = 0; ring <= rings && !now.empty(); ++ring) {
       found.clear();
       for (Index const cell : now) {
@@ -44,16 +44,16 @@ class RegionBuilder {
       next.clear();
       for (Index const node : found)
         mesh_cells_.around(node, [&](Index cell, int) {
-          if (std::exchange(taken[std::size_t(cell)], 1) == 0) next.push_back(cell);
+          if (std::exchange(taken[cell], 1) == 0) next.push_back(cell);
         });
       std::swap(now, next);
     }
     std::sort(reached_.begin(), reached_.end());
   }
   void reach(Index node, std::vector<Index>& found) {
-    if (point_[std::size_t(node)] != outside) return;
+    if (point_[node] != outside) return;
     points_.for_each_node(node, [&](PointNode const& n) {
-      if (std::exchange(point_[std::size_t(n.node)], reached) != outside) return;
+      if (std::exchange(point_[n.node], reached) != outside) return;
       found.push_back(n.node);
       reached_.push_back(n.node);
     });
@@ -84,12 +84,12 @@ class RegionBuilder {
       points_.keep(node);
       return;
     }
-    for (PointNode const& n : nodes) point_[std::size_t(n.node)] = Index32(region_.sliding.size());
+    for (PointNode const& n : nodes) point_[n.node] = Index32(region_.sliding.size());
     region_.nodes.insert(region_.nodes.end(), nodes.begin(), nodes.end());
     region_.first_node.push_back(Index(region_.nodes.size()));
     for (auto [cell, corner] : *corners) {
       corner.cell = local(cell);
-      region_.changing[std::size_t(corner.cell)] |= std::uint8_t(1 << corner.corner);
+      region_.changing[corner.cell] |= std::uint8_t(1 << corner.corner);
       region_.point_corners.push_back(corner);
     }
     region_.first_corner.push_back(Index(region_.point_corners.size()));
@@ -98,7 +98,7 @@ class RegionBuilder {
   }
 
   Index32 local(Index cell) {
-    Index32& number = local_[std::size_t(cell)];
+    Index32& number = local_[cell];
     if (number < 0) {
       number = Index32(region_.cells.size());
       region_.cells.push_back(mesh_cells_.nodes(cell));
@@ -139,22 +139,22 @@ class RegionBuilder {
     for_all(host_, "gridmorph::shape_smoothing::baseline", Index(region_.cells.size()), [this](Index n) {
       for (int c = 0; c < 8; ++c) {
         Vec3 edge[3];
-        corner_edges(points_.baseline(), region_.cells[std::size_t(n)], c, edge);
-        region_.corners[std::size_t(n)][std::size_t(c)] = kernels::BaselineCorner::of(edge);
+        corner_edges(points_.baseline(), region_.cells[n], c, edge);
+        region_.corners[n][c] = kernels::BaselineCorner::of(edge);
       }
     });
   }
 
   void colour() {
-    std::vector<Index32> colour(std::size_t(region_.n_points()), -1), taken_by;
+    std::vector<Index32> colour(region_.n_points(), -1), taken_by;
     for (Index p = 0; p < region_.n_points(); ++p) {
       Index32 last = -1;
       for (PointCorner const& c : region_.corners_of(p)) {
         if (c.cell == last) continue;
         last = c.cell;
         for (int corner = 0; corner < 8; ++corner) {
-          Index32 const q = point_[std::size_t(region_.cells[std::size_t(c.cell)].node(corner))];
-          if (q >= 0 && colour[std::size_t(q)] >= 0) taken_by[std::size_t(colour[std::size_t(q)])] = Index32(p);
+          Index32 const q = point_[region_.cells[c.cell].node(corner)];
+          if (q >= 0 && colour[q] >= 0) taken_by[colour[q]] = Index32(p);
         }
       }
       std::size_t free = 0;
@@ -163,7 +163,7 @@ class RegionBuilder {
         taken_by.push_back(-1);
         region_.colours.emplace_back();
       }
-      colour[std::size_t(p)] = Index32(free);
+      colour[p] = Index32(free);
       region_.colours[free].push_back(Index32(p));
     }
   }

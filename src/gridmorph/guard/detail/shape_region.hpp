@@ -37,11 +37,10 @@ struct ShapeRegion {
 
   [[nodiscard]] Index n_points() const { return Index(sliding.size()); }
   [[nodiscard]] std::span<PointNode const> nodes_of(Index point) const {
-    return {nodes.data() + first_node[std::size_t(point)], nodes.data() + first_node[std::size_t(point) + 1]};
+    return {nodes.data() + first_node[point], nodes.data() + first_node[point + 1]};
   }
   [[nodiscard]] std::span<PointCorner const> corners_of(Index point) const {
-    return {point_corners.data() + first_corner[std::size_t(point)],
-            point_corners.data() + first_corner[std::size_t(point) + 1]};
+    return {point_corners.data() + first_corner[point], point_corners.data() + first_corner[point + 1]};
   }
 };
 

@@ -65,7 +65,7 @@ void sweep_colour(HostInstance const& host, char const* label, std::vector<Index
   Index const count = Index(colour.size()), parts = (count + part - 1) / part;
   auto const move_part = [&](Index n) {
     std::vector<kernels::CornerChange> corners;
-    for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at) move(colour[std::size_t(at)], corners);
+    for (Index at = n * part; at < std::min(count, (n + 1) * part); ++at) move(colour[at], corners);
   };
   if (parts > few_parts)
     for_all_parts(host, label, parts, move_part);

@@ -21,10 +21,10 @@ class Sweeps {
   void changes(Index point, std::vector<CornerChange>& out) const {
     out.clear();
     for (PointCorner const& at : region_.corners_of(point)) {
-      kernels::BaselineCorner const& corner = region_.corners[std::size_t(at.cell)][at.corner];
+      kernels::BaselineCorner const& corner = region_.corners[at.cell][at.corner];
       if (corner.inverse_det == 0) continue;
       Vec3 edge[3];
-      corner_edges(x_, region_.cells[std::size_t(at.cell)], at.corner, edge);
+      corner_edges(x_, region_.cells[at.cell], at.corner, edge);
       double share[3];
       for (int d = 0; d < 3; ++d) share[d] = double(at.roles >> (1 + d) & 1) - double(at.roles & 1);
       CornerChange change = corner_change(corner, edge, share);
@@ -53,10 +53,10 @@ class Sweeps {
   [[nodiscard]] double smallest_volume(Index cell) const {
     double smallest = HUGE_VAL;
     for (int c = 0; c < 8; ++c) {
-      double const inverse = region_.corners[std::size_t(cell)][std::size_t(c)].inverse_det;
+      double const inverse = region_.corners[cell][c].inverse_det;
       if (inverse == 0) continue;
       Vec3 edge[3];
-      corner_edges(x_, region_.cells[std::size_t(cell)], c, edge);
+      corner_edges(x_, region_.cells[cell], c, edge);
       smallest = std::min(smallest, inverse * dot(cross(edge[0], edge[1]), edge[2]));
     }
     return smallest;
@@ -73,8 +73,8 @@ class Sweeps {
     return to_point(n.matrix, x_[n.node] - baseline_[n.node]);
   }
   [[nodiscard]] SlidingPoint const* slide_of(Index point) const {
-    Index32 const number = region_.sliding[std::size_t(point)];
-    return number < 0 ? nullptr : &region_.slides[std::size_t(number)];
+    Index32 const number = region_.sliding[point];
+    return number < 0 ? nullptr : &region_.slides[number];
   }
   void place(Index point, Vec3 const& u) {
     for (PointNode const& n : region_.nodes_of(point))
@@ -87,8 +87,7 @@ class Sweeps {
     int count = 0;
     for (int m = 0; m < slide.count; ++m) {
       Vec3 normal;
-      surface(slide, m).excess(baseline_[slide.node.node], slide.own_offset[std::size_t(m)],
-                               to_node(slide.node.matrix, u), normal);
+      surface(slide, m).excess(baseline_[slide.node.node], slide.own_offset[m], to_node(slide.node.matrix, u), normal);
       normal = to_point(slide.node.matrix, normal);
       double const size = norm(normal);
       for (int k = 0; k < count; ++k) normal = normal - dot(normal, across[k]) * across[k];
@@ -111,7 +110,7 @@ class Sweeps {
     return to_point(slide.node.matrix, out);
   }
   [[nodiscard]] kernels::SlipSurfaceView const& surface(SlidingPoint const& slide, int m) const {
-    return surfaces_[std::size_t(slide.surface[std::size_t(m)])];
+    return surfaces_[slide.surface[m]];
   }
 
   BlockPoints const& points_;
@@ -124,7 +123,7 @@ class Sweeps {
 double smallest_volume(HostInstance const& host, ShapeRegion const& region, Sweeps const& sweeps) {
   std::vector<double> of_cell(region.cells.size());
   for_all(host, "gridmorph::shape_smoothing::smallest_volume", Index(of_cell.size()),
-          [&](Index n) { of_cell[std::size_t(n)] = sweeps.smallest_volume(n); });
+          [&](Index n) { of_cell[n] = sweeps.smallest_volume(n); });
   return of_cell.empty() ? HUGE_VAL : *std::min_element(of_cell.begin(), of_cell.end());
 }
 

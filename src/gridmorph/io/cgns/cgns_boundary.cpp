@@ -18,7 +18,7 @@ void add_families(Layout const& layout, Mesh& mesh) {
 
 void read_block_boundary(File const& file, Node const& tree, Layout const& layout, int z, Mesh& mesh,
                          Problems& problems) {
-  auto const& zone = layout.zones[std::size_t(z)];
+  auto const& zone = layout.zones[z];
   for (auto const* zone_bc : zone.node->all("ZoneBC_t"))
     for (auto const* bc : zone_bc->all("BC_t")) {
       std::string const where = file.path() + ": zone '" + zone.name + "', BC '" + bc->name + "'";

@@ -197,7 +197,7 @@ class ConnectionReader {
     if (!other) return;
     if (!inside(donor, *other)) return outside(donor, *other, "donor range");
 
-    std::vector<std::int64_t> transform(std::size_t(zone.index_dimension));
+    std::vector<std::int64_t> transform(zone.index_dimension);
     for (std::size_t a = 0; a < transform.size(); ++a) transform[a] = std::int64_t(a) + 1;
     if (auto const* t = node.child("Transform")) transform = file_.integers(*t);
     auto const joined = join(zone, *own, donor, *other, transform);
@@ -352,8 +352,8 @@ void read_block_connection(File const& file, Layout const& layout, int zone, Nod
                            Problems& problems) {
   ConnectionReader reader(file, layout, mesh, problems);
   if (node.label == "OversetHoles_t")
-    mesh.notes.push_back(file.path() + ": zone '" + layout.zones[std::size_t(zone)].name + "', overset holes '" +
-                         node.name + "': left alone, holes play no part in morphing");
+    mesh.notes.push_back(file.path() + ": zone '" + layout.zones[zone].name + "', overset holes '" + node.name +
+                         "': left alone, holes play no part in morphing");
   if (node.label == "GridConnectivity1to1_t") reader.one_to_one(zone, node);
   if (node.label == "GridConnectivity_t") reader.general(zone, node);
 }

@@ -47,7 +47,7 @@ void add_polyhedra(std::vector<Section> const& sections, ListedFaces const& face
   for (auto const& s : sections)
     for (Index f = 0; f < Index(s.parents.size()) / 2; ++f)
       for (int const side : {0, 1}) {
-        auto const parent = s.parents[std::size_t(f + side * s.size())];
+        auto const parent = s.parents[f + side * s.size()];
         if (parent > 0 && parent < std::numeric_limits<Index32>::max())
           elements[parent].push_back(side == 0 ? s.first + f : -(s.first + f));
       }

@@ -131,9 +131,9 @@ class SectionReader {
       return wrong("lists " + std::to_string(s.list.size()) + " nodes for " + std::to_string(n) + " elements of " +
                    std::to_string(kind->nodes)),
              false;
-    s.cgns_types.assign(std::size_t(n), static_cast<unsigned char>(type));
-    s.start.resize(std::size_t(n) + 1);
-    for (Index e = 0; e <= n; ++e) s.start[std::size_t(e)] = e * kind->nodes;
+    s.cgns_types.assign(n, static_cast<unsigned char>(type));
+    s.start.resize(n + 1);
+    for (Index e = 0; e <= n; ++e) s.start[e] = e * kind->nodes;
     return true;
   }
 
@@ -143,7 +143,7 @@ class SectionReader {
     Index const size = Index(s.list.size());
     s.start.push_back(0);
     for (Index e = 0; e < n; ++e) {
-      auto const type = at < size ? types_(s.list[std::size_t(at)]) : 0;
+      auto const type = at < size ? types_(s.list[at]) : 0;
       auto const kind = element_kind(type);
       if (!kind || at + 1 + kind->nodes > size)
         return wrong("its element " + std::to_string(s.first + e) + " has " +
@@ -159,13 +159,13 @@ class SectionReader {
       s.start.push_back(to);
     }
     if (at != size) return wrong("lists more numbers than its elements have"), false;
-    s.list.resize(std::size_t(to));
+    s.list.resize(to);
     return true;
   }
 
   /// NGON_n and NFACE_n: with ElementStartOffset (CGNS 4), or each list behind its length.
   bool split_polygons(Section& s, Index n, std::int64_t type, std::vector<std::int64_t> const& start) {
-    s.cgns_types.assign(std::size_t(n), static_cast<unsigned char>(type));
+    s.cgns_types.assign(n, static_cast<unsigned char>(type));
     Index const size = Index(s.list.size());
     if (!start.empty()) {
       bool fits = Index(start.size()) == n + 1 && start.front() == 0 && start.back() == size;
@@ -177,7 +177,7 @@ class SectionReader {
     Index at = 0, to = 0;
     s.start.push_back(0);
     for (Index e = 0; e < n; ++e) {
-      auto const count = at < size ? s.list[std::size_t(at)] : -1;
+      auto const count = at < size ? s.list[at] : -1;
       if (count < 0 || count > size - at - 1)
         return wrong("its element " + std::to_string(s.first + e) + " does not fit into the list"), false;
       std::copy_n(s.list.begin() + at + 1, count, s.list.begin() + to);
@@ -186,7 +186,7 @@ class SectionReader {
       s.start.push_back(to);
     }
     if (at != size) return wrong("lists more numbers than its elements have"), false;
-    s.list.resize(std::size_t(to));
+    s.list.resize(to);
     return true;
   }
 
@@ -212,9 +212,8 @@ class SectionReader {
 }  // namespace
 
 std::optional<ElementKind> element_kind(std::int64_t cgns_type) {
-  if (cgns_type < 0 || cgns_type >= std::int64_t(kinds.size()) || kinds[std::size_t(cgns_type)].nodes == 0)
-    return std::nullopt;
-  return kinds[std::size_t(cgns_type)];
+  if (cgns_type < 0 || cgns_type >= std::int64_t(kinds.size()) || kinds[cgns_type].nodes == 0) return std::nullopt;
+  return kinds[cgns_type];
 }
 
 ElementTypes::ElementTypes(File const& file, Node const& tree) {
@@ -256,8 +255,7 @@ int dimension_of(std::vector<Section> const& sections) {
 
 Index ListedFaces::find(std::int64_t file_number) const {
   for (auto const& g : groups) {
-    if (g.begin == g.end || file_number < number[std::size_t(g.begin)] || file_number > number[std::size_t(g.end) - 1])
-      continue;
+    if (g.begin == g.end || file_number < number[g.begin] || file_number > number[std::size_t(g.end) - 1]) continue;
     auto const begin = number.begin() + g.begin, end = number.begin() + g.end;
     auto const at = std::lower_bound(begin, end, file_number);
     if (at != end && *at == file_number) return Index(at - number.begin());
@@ -284,7 +282,7 @@ ListedFaces add_elements(std::vector<Section> const& sections, std::string const
   for (auto const& s : sections) {
     ListedFaces::Group group{s.name, faces.nodes.size(), 0, s.cgns_types.front() == ngon};
     for (Index e = 0; e < s.size(); ++e) {
-      auto const type = s.cgns_types[std::size_t(e)];
+      auto const type = s.cgns_types[e];
       if (type == nface) break;
       if (type == ngon && mesh.dimension == 3) {
         if (s[e].size() < 3) {

@@ -33,7 +33,7 @@ struct Section {
 
   [[nodiscard]] Index size() const { return Index(cgns_types.size()); }
   [[nodiscard]] std::span<std::int64_t const> operator[](Index e) const {
-    return {list.data() + start[std::size_t(e)], std::size_t(start[std::size_t(e) + 1] - start[std::size_t(e)])};
+    return {list.data() + start[e], std::size_t(start[e + 1] - start[e])};
   }
 };
 

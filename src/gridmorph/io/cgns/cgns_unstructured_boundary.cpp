@@ -18,9 +18,9 @@ class BoundaryReader {
       : file_(file), tree_(tree), layout_(layout), faces_(faces), mesh_(mesh), problems_(problems) {}
 
   void zone(int z) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     if (zone.is_block()) return block(z);
-    std::int64_t const largest = largest_number(zone, faces_[std::size_t(z)], mesh_, z);
+    std::int64_t const largest = largest_number(zone, faces_[z], mesh_, z);
     for (auto const* zone_bc : zone.node->all("ZoneBC_t"))
       for (auto const* bc : zone_bc->all("BC_t")) condition(z, *bc, largest);
     smaller();
@@ -36,7 +36,7 @@ class BoundaryReader {
   }
 
   void condition(int z, Node const& bc, std::int64_t largest) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     where_ = file_.path() + ": zone '" + zone.name + "', BC '" + bc.name + "'";
     Patch patch;
     patch.name = bc.name;
@@ -75,7 +75,7 @@ class BoundaryReader {
   void note(std::string const& what) { mesh_.notes.push_back(where_ + ": " + what); }
 
   bool add_nodes(int z, std::vector<std::int64_t> const& numbers, Patch& patch) {
-    auto const& zone = mesh_.zones[std::size_t(z)];
+    auto const& zone = mesh_.zones[z];
     for (auto const n : numbers) {
       if (n < 1 || n > zone.size()) {
         problems_.add(where_ + ": names node " + std::to_string(n) + ", but the zone has " +
@@ -90,7 +90,7 @@ class BoundaryReader {
   }
 
   bool add_faces(int z, std::vector<std::int64_t> const& numbers, Patch& patch) {
-    auto& faces = faces_[std::size_t(z)];
+    auto& faces = faces_[z];
     if (!numbers.empty() &&
         std::all_of(numbers.begin(), numbers.end(), [&](auto const n) { return faces.is_smaller(n); })) {
       if (n_smaller_++ == 0) first_smaller_ = where_;
@@ -104,11 +104,11 @@ class BoundaryReader {
         if (missing++ == 0) first = n;
         continue;
       }
-      faces.claimed[std::size_t(face)] = 1;
+      faces.claimed[face] = 1;
       patch.faces.add(faces.nodes[face]);
     }
     if (missing == 0) return true;
-    auto const& zone = mesh_.zones[std::size_t(z)];
+    auto const& zone = mesh_.zones[z];
     auto const begin = mesh_.elements.number.begin() + zone.first_element, end = begin + zone.n_elements;
     bool const cell = std::find(begin, end, Index32(first)) != end;
     std::string const what = std::to_string(missing) + " of its " + std::to_string(numbers.size()) +
@@ -125,7 +125,7 @@ class BoundaryReader {
   /// be those of the section: all of the patch's, because each node may be listed by one condition only where several
   /// meet, or all of the section's.
   bool take_section(int z, Patch& patch) {
-    auto& faces = faces_[std::size_t(z)];
+    auto& faces = faces_[z];
     for (auto const& group : faces.groups) {
       bool const own = group.name == patch.name;
       bool const of_family = !patch.families.empty() && group.name == patch.families.front();
@@ -151,8 +151,8 @@ class BoundaryReader {
 
   /// Sections of faces that no boundary condition names, under their own names.
   void sections(int z) {
-    auto const& zone = layout_.zones[std::size_t(z)];
-    auto& faces = faces_[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
+    auto& faces = faces_[z];
     for (auto const& group : faces.groups) {
       bool const unclaimed = std::none_of(faces.claimed.begin() + group.begin, faces.claimed.begin() + group.end,
                                           [](char c) { return c != 0; });

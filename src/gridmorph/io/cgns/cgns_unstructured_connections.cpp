@@ -29,7 +29,7 @@ class ConnectionReader {
         tolerance_(place_tolerance(1e-6, mesh.size(), coordinate_resolution(mesh))) {}
 
   void read(int z, Node const& node) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     bool const connects = node.label == "GridConnectivity_t" || node.label == "GridConnectivity1to1_t";
     if (!connects) {
       if (zone.is_block()) read_block_connection(file_, layout_, z, node, mesh_, problems_);
@@ -39,7 +39,7 @@ class ConnectionReader {
     where_ =
         file_.path() + ": zone '" + zone.name + "', " + (one_to_one ? "interface '" : "connection '") + node.name + "'";
     int const donor = find_donor(layout_, zone, file_.text(node));
-    bool const to_block = donor >= 0 && layout_.zones[std::size_t(donor)].is_block();
+    bool const to_block = donor >= 0 && layout_.zones[donor].is_block();
     if (zone.is_block() && (to_block || donor < 0)) return between_blocks(z, node);
     if (one_to_one && !zone.is_block() && !to_block) return;  // not for unstructured zones (SIDS)
     auto const* type_node = node.labelled("GridConnectivityType_t");
@@ -53,7 +53,7 @@ class ConnectionReader {
     patch.name = node.name;
     patch.bc_type = type;
     patch.kind = PatchKind::connection;
-    patch.families = families_of(file_, *layout_.zones[std::size_t(z)].base, node);
+    patch.families = families_of(file_, *layout_.zones[z].base, node);
     patch.zone = z;
     patch.faces = own->faces;
     if (patch.faces.size() == 0) patch.nodes = sorted(own->all);
@@ -91,7 +91,7 @@ class ConnectionReader {
   }
 
   std::optional<Set> nodes_of_points(int z, std::vector<Index3> const& points, std::string const& verb) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     Set out;
     for (auto const& p : points) {
       if (!inside(zone, {p, p})) {
@@ -99,14 +99,14 @@ class ConnectionReader {
                       ", which zone '" + zone.name + "' does not have");
         return std::nullopt;
       }
-      out.all.push_back(Index32(mesh_.zones[std::size_t(z)].node({p[0] - 1, p[1] - 1, p[2] - 1})));
+      out.all.push_back(Index32(mesh_.zones[z].node({p[0] - 1, p[1] - 1, p[2] - 1})));
     }
     return out;
   }
 
   /// The nodes of a block that a set names: nodes one by one, or a rectangle of faces.
   std::optional<Set> nodes_of_block(int z, Node const& node) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     std::string why;
     auto const set = read_point_set(file_, zone, node, why);
     if (!set) {
@@ -125,15 +125,15 @@ class ConnectionReader {
     }
     Set out;
     if (nodes) out = *nodes_of_points(z, set->points.empty() ? all_points(set->corners) : set->points, "names");
-    if (face.misfit == Misfit::none) add_faces(mesh_.zones[std::size_t(z)], face.range, out.faces);
+    if (face.misfit == Misfit::none) add_faces(mesh_.zones[z], face.range, out.faces);
     if (!nodes) out.all = sorted(out.faces.item);
     return out;
   }
 
   std::optional<Set> nodes_of(int z, Node const& node) {
-    if (layout_.zones[std::size_t(z)].is_block()) return nodes_of_block(z, node);
+    if (layout_.zones[z].is_block()) return nodes_of_block(z, node);
     std::string why;
-    std::int64_t const largest = largest_number(layout_.zones[std::size_t(z)], faces_[std::size_t(z)], mesh_, z);
+    std::int64_t const largest = largest_number(layout_.zones[z], faces_[z], mesh_, z);
     auto const set = read_number_set(file_, node, largest, why);
     if (!set) {
       note("skipped, " + why);
@@ -143,8 +143,8 @@ class ConnectionReader {
   }
 
   std::optional<Set> to_nodes(int z, NumberSet const& set, std::string const& verb) {
-    auto const& zone = mesh_.zones[std::size_t(z)];
-    auto& faces = faces_[std::size_t(z)];
+    auto const& zone = mesh_.zones[z];
+    auto& faces = faces_[z];
     Set out;
     for (auto const n : set.numbers) {
       Index const face = set.nodes ? -1 : faces.find(n);
@@ -156,7 +156,7 @@ class ConnectionReader {
       if (set.nodes) {
         out.all.push_back(Index32(n - 1 + zone.first_node));
       } else {
-        faces.claimed[std::size_t(face)] = 1;
+        faces.claimed[face] = 1;
         out.faces.add(faces.nodes[face]);
       }
     }
@@ -168,7 +168,7 @@ class ConnectionReader {
   std::optional<Set> donors(int donor_zone, Node const& node, bool own_are_nodes) {
     for (auto const* name : {"PointListDonor", "PointRangeDonor"})
       if (auto const* list = node.child(name)) {
-        if (layout_.zones[std::size_t(donor_zone)].is_block())
+        if (layout_.zones[donor_zone].is_block())
           return own_are_nodes ? donors_in_block(donor_zone, *list) : std::nullopt;
         // The range of a 1-to-1 interface is one of indices, which elements do not have.
         if (node.label == "GridConnectivity1to1_t") return std::nullopt;
@@ -181,7 +181,7 @@ class ConnectionReader {
   }
 
   std::optional<Set> donors_in_block(int donor_zone, Node const& list) {
-    auto const& zone = layout_.zones[std::size_t(donor_zone)];
+    auto const& zone = layout_.zones[donor_zone];
     auto const points = read_tuples(file_, list, zone.index_dimension);
     bool const range = list.label == "IndexRange_t";
     if (!points || (range && points->size() != 2)) {
@@ -196,7 +196,7 @@ class ConnectionReader {
   /// Where the donors of a zone's nodes are looked for that the file does not list: at the faces that it lists, or all
   /// round a block. Elements may leave out the faces that a block lies behind.
   std::vector<Index32> possible_donors(int zone, int donor) {
-    auto const& there = mesh_.zones[std::size_t(donor)];
+    auto const& there = mesh_.zones[donor];
     if (there.is_block()) {
       CsrGraph faces;
       for (int axis = 0; axis < 3; ++axis) {
@@ -210,14 +210,14 @@ class ConnectionReader {
       }
       return sorted(std::move(faces.item));
     }
-    if (!mesh_.zones[std::size_t(zone)].is_block()) return sorted(faces_[std::size_t(donor)].nodes.item);
-    std::vector<Index32> all(std::size_t(there.size()));
+    if (!mesh_.zones[zone].is_block()) return sorted(faces_[donor].nodes.item);
+    std::vector<Index32> all(there.size());
     std::iota(all.begin(), all.end(), Index32(there.first_node));
     return all;
   }
 
   bool matched(int z, Node const& node, std::vector<Index32> const& own) {
-    auto const& zone = layout_.zones[std::size_t(z)];
+    auto const& zone = layout_.zones[z];
     int const donor = find_donor(layout_, zone, file_.text(node));
     if (donor < 0) {
       note("is Abutting1to1, but donor zone '" + file_.text(node) + "' is not in the file; kept as a patch");
@@ -227,7 +227,7 @@ class ConnectionReader {
     bool const by_nodes = !location || file_.text(*location) == "Vertex";
     Connection c;
     c.name = node.name;
-    c.families = families_of(file_, *layout_.zones[std::size_t(z)].base, node);
+    c.families = families_of(file_, *layout_.zones[z].base, node);
     c.zone = z;
     c.donor_zone = donor;
     c.periodic = read_periodic(file_, *zone.base, *zone.node, node, where_, mesh_.notes);
@@ -251,8 +251,8 @@ class ConnectionReader {
     auto const missing = std::count(c.donor_nodes.begin(), c.donor_nodes.end(), -1);
     if (missing > 0) {
       note("is Abutting1to1, but " + std::to_string(missing) + " of its " + std::to_string(c.nodes.size()) +
-           " nodes have none within " + std::to_string(tolerance_) + " in zone '" +
-           mesh_.zones[std::size_t(c.donor_zone)].name + "'; kept as a patch");
+           " nodes have none within " + std::to_string(tolerance_) + " in zone '" + mesh_.zones[c.donor_zone].name +
+           "'; kept as a patch");
       return false;
     }
     if (others && !others->all.empty() && others->faces.size() == 0)

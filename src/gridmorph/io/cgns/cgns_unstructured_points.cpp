@@ -38,9 +38,9 @@ std::optional<NumberSet> read_number_set(File const& file, Node const& owner, st
 std::int64_t largest_number(ZoneLayout const& zone, ListedFaces const& faces, Mesh const& mesh, int z) {
   std::int64_t largest = zone.extent[0];
   for (auto const number : faces.number) largest = std::max(largest, number);
-  auto const& own = mesh.zones[std::size_t(z)];
+  auto const& own = mesh.zones[z];
   for (Index e = own.first_element; e < own.first_element + own.n_elements; ++e)
-    largest = std::max<std::int64_t>(largest, mesh.elements.number[std::size_t(e)]);
+    largest = std::max<std::int64_t>(largest, mesh.elements.number[e]);
   return largest;
 }
 

@@ -256,7 +256,7 @@ class Hdf5File::Walk {
     if (rank < 0 || rank > max_rank) damaged(node.path, "its data have no dimensions that CGNS knows");
     std::uint64_t bytes = rank == 0 ? 0 : std::uint64_t(bytes_per_element(stored.type));
     for (int a = 0; a < rank; ++a) {
-      std::uint64_t const n = sizes[std::size_t(a)];
+      std::uint64_t const n = sizes[a];
       if (n > std::uint64_t(std::numeric_limits<std::int64_t>::max()) / std::max<std::uint64_t>(bytes, 1))
         too_large(node);
       bytes *= n;

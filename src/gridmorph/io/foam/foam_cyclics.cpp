@@ -65,7 +65,7 @@ class Matcher {
 
   [[nodiscard]] std::vector<Vec3> places(Pairs const& pairs, int side) const {
     std::vector<Vec3> out;
-    for (auto const& p : pairs) out.push_back(x_[p[std::size_t(side)]]);
+    for (auto const& p : pairs) out.push_back(x_[p[side]]);
     return out;
   }
 

@@ -293,9 +293,9 @@ std::vector<std::int64_t> FoamFile::raw_list(char const* what, Index most_alike)
   Index const n = begin_list(what, binary_ ? label_bytes_ : 2, most_alike, bracket);
   std::vector<std::int64_t> out;
   if (n == 0 && bracket != '(') return out;
-  out.reserve(std::size_t(n));
+  out.reserve(n);
   if (bracket == '{') {
-    out.assign(std::size_t(n), integer(what));
+    out.assign(n, integer(what));
     expect('}', "the value of a list");
     return out;
   }
@@ -442,7 +442,7 @@ Coordinates FoamFile::coordinates() {
   std::vector<double> all;
   Coordinates out(points([&](PointText const& p) { all.push_back(p.value); }));
   for (Index p = 0; p < out.size(); ++p)
-    out.set(p, {all[std::size_t(3 * p)], all[std::size_t(3 * p) + 1], all[std::size_t(3 * p) + 2]});
+    out.set(p, {all[3 * p], all[std::size_t(3 * p) + 1], all[std::size_t(3 * p) + 2]});
   return out;
 }
 

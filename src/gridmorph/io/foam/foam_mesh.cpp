@@ -114,25 +114,25 @@ class Reader {
   /// Area vectors of all faces of a cell add up to nothing, to the 1e-6 that checkMesh asks for, whatever their shape.
   void check_closed() const {
     constexpr double rounding = 1e-6;
-    std::vector<Vec3> sum(std::size_t(lists_.n_cells()));
+    std::vector<Vec3> sum(lists_.n_cells());
     std::vector<double> areas(sum.size(), 0.0);
     for (Index f = 0; f < faces_.size(); ++f) {
       Vec3 const area = 0.5 * face_normal(faces_[f], mesh_.coordinates);
       double const size = norm(area);
       auto const add = [&](Index32 cell, Vec3 const& outwards) {
-        sum[std::size_t(cell)] += outwards;
-        areas[std::size_t(cell)] += size;
+        sum[cell] += outwards;
+        areas[cell] += size;
       };
-      add(owner_[std::size_t(f)], area);
-      if (std::size_t(f) < neighbour_.size()) add(neighbour_[std::size_t(f)], -1.0 * area);
+      add(owner_[f], area);
+      if (std::size_t(f) < neighbour_.size()) add(neighbour_[f], -1.0 * area);
     }
     Index open = 0, first = -1;
     for (std::size_t c = 0; c < sum.size(); ++c)
       if (norm(sum[c]) > rounding * areas[c] && open++ == 0) first = Index(c);
     if (open > 0)
       throw MeshError(path_ + ": " + std::to_string(open) + " cells do not close, the first is cell " +
-                      std::to_string(first) + ": its faces lack " + to_text(norm(sum[std::size_t(first)]), 3) +
-                      " of an area of " + to_text(areas[std::size_t(first)], 3) +
+                      std::to_string(first) + ": its faces lack " + to_text(norm(sum[first]), 3) + " of an area of " +
+                      to_text(areas[first], 3) +
                       "; owner, neighbour or the way round of a face is wrong (see checkMesh), write the mesh again");
   }
 
@@ -141,18 +141,18 @@ class Reader {
     // Faces of each cell, ascending; faces that lead into it as -1 - face.
     std::vector<Index> first(std::size_t(n_cells) + 1, 0);
     for (auto const* list : {&owner_, &neighbour_})
-      for (Index32 const c : *list) ++first[std::size_t(c) + 1];
+      for (Index32 const c : *list) ++first[c + 1];
     for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
-    std::vector<Index32> of_cell(std::size_t(first.back()));
+    std::vector<Index32> of_cell(first.back());
     std::vector<Index> next(first.begin(), first.end() - 1);
     for (std::size_t f = 0; f < owner_.size(); ++f) {
-      of_cell[std::size_t(next[std::size_t(owner_[f])]++)] = Index32(f);
-      if (f < neighbour_.size()) of_cell[std::size_t(next[std::size_t(neighbour_[f])]++)] = -1 - Index32(f);
+      of_cell[next[owner_[f]]++] = Index32(f);
+      if (f < neighbour_.size()) of_cell[next[neighbour_[f]]++] = -1 - Index32(f);
     }
     io::ElementsByFaces elements(mesh_);
     for (Index32 c = 0; c < n_cells; ++c) {
-      for (Index k = first[std::size_t(c)]; k < first[std::size_t(c) + 1]; ++k) {
-        Index32 const f = of_cell[std::size_t(k)];
+      for (Index k = first[c]; k < first[c + 1]; ++k) {
+        Index32 const f = of_cell[k];
         elements.add_face(faces_[f < 0 ? -1 - f : f], f >= 0);
       }
       if (elements.n_faces() < 4)

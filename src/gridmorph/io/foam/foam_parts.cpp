@@ -145,7 +145,7 @@ class Joiner {
   }
   /// The neighbour patch of the cyclic patch that a patch between parts refers to.
   [[nodiscard]] std::string_view neighbour_patch(std::size_t p, BoundaryEntry const& entry) const {
-    return out_.lists.boundary[std::size_t(patch_of(p, entry, entry["referPatch"]))]["neighbourPatch"];
+    return out_.lists.boundary[patch_of(p, entry, entry["referPatch"])]["neighbourPatch"];
   }
 
   /// Calls body(patch, face, the other part, its face) for each face that part p shares with a later one, so once for
@@ -203,24 +203,22 @@ class Joiner {
       addressing_.clear();
     out_.lists.points = Coordinates(n_nodes);
     for (std::size_t p = parts_.size(); p-- > 0;)
-      for (Index n = 0; n < lists_[p].points.size(); ++n)
-        out_.lists.points.set(out_.nodes[p][std::size_t(n)], lists_[p].points[n]);
+      for (Index n = 0; n < lists_[p].points.size(); ++n) out_.lists.points.set(out_.nodes[p][n], lists_[p].points[n]);
   }
   /// Whether what the parts know of the mesh that they were cut from names the same nodes as one, each number once, and
   /// all cells.
   [[nodiscard]] bool follows_addressing(Index32 n_nodes) const {
-    std::vector<Index32> known(std::size_t(n_nodes), -1), joined(std::size_t(n_nodes), -1);
-    std::vector<char> cells(std::size_t(first_cell_.back()), 0);
+    std::vector<Index32> known(n_nodes, -1), joined(std::size_t(n_nodes), -1);
+    std::vector<char> cells(first_cell_.back(), 0);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       for (std::size_t n = 0; n < addressing_[p].points.size(); ++n) {
         Index32 const to = addressing_[p].points[n], own = out_.nodes[p][n];
         if (to < 0 || to >= n_nodes) return false;
-        if (std::exchange(known[std::size_t(own)], to) >= 0 && known[std::size_t(own)] != to) return false;
-        if (Index32 const before = std::exchange(joined[std::size_t(to)], own); before >= 0 && before != own)
-          return false;
+        if (std::exchange(known[own], to) >= 0 && known[own] != to) return false;
+        if (Index32 const before = std::exchange(joined[to], own); before >= 0 && before != own) return false;
       }
       for (Index32 const c : addressing_[p].cells)
-        if (c < 0 || c >= Index32(cells.size()) || std::exchange(cells[std::size_t(c)], 1) != 0) return false;
+        if (c < 0 || c >= Index32(cells.size()) || std::exchange(cells[c], 1) != 0) return false;
       for (Index32 const f : addressing_[p].faces)
         if (f == 0) return false;
     }
@@ -229,25 +227,25 @@ class Joiner {
 
   void number_cells() {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      std::vector<Index32> own(std::size_t(lists_[p].n_cells()));
+      std::vector<Index32> own(lists_[p].n_cells());
       std::iota(own.begin(), own.end(), Index32(first_cell_[p]));
       cell_.push_back(addressing_.empty() ? std::move(own) : addressing_[p].cells);
     }
   }
   [[nodiscard]] Index32 cell_of(std::size_t p, std::vector<Index32> const& list, Index f) const {
-    return cell_[p][std::size_t(list[std::size_t(f)])];
+    return cell_[p][list[f]];
   }
 
   /// A face of a part, as the mesh that it was cut from has it, where that is known.
   [[nodiscard]] Face face_of(std::size_t p, Index f) const {
     Face out;
     out.owner = cell_of(p, lists_[p].owner, f);
-    out.number = addressing_.empty() ? Index(faces_.size()) : std::abs(addressing_[p].faces[std::size_t(f)]);
+    out.number = addressing_.empty() ? Index(faces_.size()) : std::abs(addressing_[p].faces[f]);
     out.of = {Index(p), f};
     return out;
   }
   [[nodiscard]] bool is_turned(std::size_t p, Index f) const {
-    return !addressing_.empty() && addressing_[p].faces[std::size_t(f)] < 0;
+    return !addressing_.empty() && addressing_[p].faces[f] < 0;
   }
 
   void add_faces(std::size_t p) {
@@ -292,7 +290,7 @@ class Joiner {
     auto const p = std::size_t(face.of[0]);
     auto const there = lists_[p].faces[face.of[1]];
     std::vector<Index32> out = face.turned ? reversed(there, 0) : std::vector<Index32>(there.begin(), there.end());
-    for (Index32& n : out) n = out_.nodes[p][std::size_t(n)];
+    for (Index32& n : out) n = out_.nodes[p][n];
     return out;
   }
 
@@ -304,11 +302,11 @@ class Joiner {
     Lists& to = out_.lists;
     for (Face const& face : faces_) {
       if (face.patch >= 0) {
-        BoundaryEntry& entry = to.boundary[std::size_t(face.patch)];
+        BoundaryEntry& entry = to.boundary[face.patch];
         if (entry.size++ == 0) entry.start = to.faces.size();
       }
       for (auto const& [p, f] : {face.of, face.also})
-        if (p >= 0) face_[std::size_t(p)][std::size_t(f)] = Index32(to.faces.size());
+        if (p >= 0) face_[p][f] = Index32(to.faces.size());
       to.faces.add(nodes_of(face));
       to.owner.push_back(face.owner);
       if (face.patch < 0) to.neighbour.push_back(face.neighbour);
@@ -326,7 +324,7 @@ class Joiner {
     for (ZoneEntry const& zone : of_part) {
       auto at = std::find_if(to.begin(), to.end(), [&](ZoneEntry const& z) { return z.name == zone.name; });
       if (at == to.end()) at = to.insert(to.end(), {zone.name, {}});
-      for (Index32 const label : zone.labels) at->labels.push_back(number[std::size_t(label)]);
+      for (Index32 const label : zone.labels) at->labels.push_back(number[label]);
       std::sort(at->labels.begin(), at->labels.end());
       at->labels.erase(std::unique(at->labels.begin(), at->labels.end()), at->labels.end());
     }
@@ -352,7 +350,7 @@ Coordinates points_of_part(JoinedLists const& joined, std::size_t part, Coordina
   Coordinates const& own = joined.points[part];
   Coordinates out(own.size());
   for (Index n = 0; n < own.size(); ++n) {
-    Index const node = joined.nodes[part][std::size_t(n)];
+    Index const node = joined.nodes[part][n];
     Vec3 const at = own[n], from = joined.lists.points[node], to = morphed[node];
     out.set(n, {gone_along(at.x, from.x, to.x), gone_along(at.y, from.y, to.y), gone_along(at.z, from.z, to.z)});
   }

@@ -135,7 +135,7 @@ class PlaneFinder {
       Side const own = side_of(f, up_);
       polygons = polygons || (own == upper && lists_.faces[f].size() > 4);
       for (Index32 const n : lists_.faces[f]) {
-        char& side = side_[std::size_t(n)];
+        char& side = side_[n];
         if (side != none && side != own) {
           across = across && is_wedge();
           side = both;
@@ -151,7 +151,7 @@ class PlaneFinder {
 
   /// Finds the pairs of nodes by the edges across, and nodes of both planes.
   void find_pairs() {
-    auto const side = [&](Index32 n) { return side_[std::size_t(n)]; };
+    auto const side = [&](Index32 n) { return side_[n]; };
     for (Index f = 0; f < lists_.faces.size(); ++f) {
       auto const nodes = lists_.faces[f];
       for (std::size_t v = 0; v < nodes.size(); ++v) {
@@ -202,8 +202,8 @@ class PlaneFinder {
 /// The patch in which the two planes of a wedge meet: its edges on the axis, by the name of the patch that would have
 /// faces there.
 void add_axis(Lists const& lists, Planes const& planes, std::vector<Index32> const& number, Mesh& mesh) {
-  std::vector<char> is_axis(std::size_t(lists.points.size()), 0);
-  for (auto const& [a, b] : planes.pairs) is_axis[std::size_t(a)] = a == b ? 1 : 0;
+  std::vector<char> is_axis(lists.points.size(), 0);
+  for (auto const& [a, b] : planes.pairs) is_axis[a] = a == b ? 1 : 0;
   Patch axis;
   axis.name = "axis";
   axis.bc_type = "symmetryPlane";
@@ -216,8 +216,7 @@ void add_axis(Lists const& lists, Planes const& planes, std::vector<Index32> con
     if (dot(face_normal(nodes, lists.points), planes.wedge->normal) <= 0) return;
     for (std::size_t v = 0; v < nodes.size(); ++v) {
       Index32 const a = nodes[v], b = nodes[(v + 1) % nodes.size()];
-      if (is_axis[std::size_t(a)] != 0 && is_axis[std::size_t(b)] != 0)
-        axis.faces.add(std::array{number[std::size_t(a)], number[std::size_t(b)]});
+      if (is_axis[a] != 0 && is_axis[b] != 0) axis.faces.add(std::array{number[a], number[b]});
     }
   });
   if (axis.faces.size() > 0) mesh.patches.push_back(std::move(axis));
@@ -249,12 +248,12 @@ std::optional<Planes> find_planes(Lists const& lists, std::string& why_not) {
 Mesh upper_plane(Mesh const& mesh, Planes const& planes, Lists const& lists) {
   auto const& pairs = planes.pairs;
   CsrGraph const& faces = lists.faces;
-  std::vector<Index32> number(std::size_t(mesh.n_nodes()), -1);
-  for (std::size_t n = 0; n < pairs.size(); ++n) number[std::size_t(pairs[n][0])] = Index32(n);
+  std::vector<Index32> number(mesh.n_nodes(), -1);
+  for (std::size_t n = 0; n < pairs.size(); ++n) number[pairs[n][0]] = Index32(n);
   auto const on_plane = [&](std::span<Index32 const> nodes) {
     std::vector<Index32> out;
     for (Index32 const n : nodes)
-      if (number[std::size_t(n)] >= 0) out.push_back(number[std::size_t(n)]);
+      if (number[n] >= 0) out.push_back(number[n]);
     return out;
   };
   Mesh out;
@@ -266,7 +265,7 @@ Mesh upper_plane(Mesh const& mesh, Planes const& planes, Lists const& lists) {
   out.zones.back().single_precision = mesh.zones.front().single_precision;
   std::vector<std::pair<Index32, Index>> cells;  // by number
   for (Index f = 0; f < faces.size(); ++f)
-    if (on_plane(faces[f]).size() == faces[f].size()) cells.emplace_back(lists.owner[std::size_t(f)], f);
+    if (on_plane(faces[f]).size() == faces[f].size()) cells.emplace_back(lists.owner[f], f);
   std::sort(cells.begin(), cells.end());
   for (auto const& [cell, f] : cells) {
     auto const nodes = on_plane(faces[f]);
@@ -287,13 +286,12 @@ Mesh upper_plane(Mesh const& mesh, Planes const& planes, Lists const& lists) {
     out.patches.push_back(std::move(edges));
   }
   if (planes.wedge) add_axis(lists, planes, number, out);
-  std::vector<Index32> element(std::size_t(mesh.n_elements()), -1);  // of a cell
-  for (std::size_t e = 0; e < out.elements.number.size(); ++e)
-    element[std::size_t(out.elements.number[e])] = Index32(e);
+  std::vector<Index32> element(mesh.n_elements(), -1);  // of a cell
+  for (std::size_t e = 0; e < out.elements.number.size(); ++e) element[out.elements.number[e]] = Index32(e);
   for (Subset const& subset : mesh.subsets) {
     Subset own{subset.name, {}};
     for (Index32 const c : subset.elements)
-      if (element[std::size_t(c)] >= 0) own.elements.push_back(element[std::size_t(c)]);
+      if (element[c] >= 0) own.elements.push_back(element[c]);
     for (Index f = 0; f < subset.faces.size(); ++f)
       if (auto const nodes = on_plane(subset.faces[f]); nodes.size() == 2) own.faces.add(nodes);
     out.subsets.push_back(std::move(own));
@@ -303,7 +301,7 @@ Mesh upper_plane(Mesh const& mesh, Planes const& planes, Lists const& lists) {
     own.nodes.clear();
     own.donor_nodes.clear();
     for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
-      Index32 const a = number[std::size_t(connection.nodes[n])], b = number[std::size_t(connection.donor_nodes[n])];
+      Index32 const a = number[connection.nodes[n]], b = number[connection.donor_nodes[n]];
       if (a < 0 || b < 0) continue;
       own.nodes.push_back(a);
       own.donor_nodes.push_back(b);

@@ -32,7 +32,7 @@ std::string with_points(FoamFile& file, Coordinates const& morphed) {
   std::size_t copied = 0;
   Index const n = file.points([&](PointText const& p) {
     if (p.point >= morphed.size()) return;
-    double const value = arrays[std::size_t(p.component)][p.point];
+    double const value = arrays[p.component][p.point];
     std::array<char, 32> bytes{};
     std::size_t length = 0;
     if (!file.is_binary()) {

@@ -31,7 +31,7 @@ class TagPlaces {
     if (std::uint64_t(*high) - std::uint64_t(*low) < spread * tags.size() + few) {
       table_.assign(std::size_t(*high - *low) + 1, -1);
       for (std::size_t n = 0; n < tags.size(); ++n) {
-        Index32& place = table_[std::size_t(tags[n] - low_)];
+        Index32& place = table_[tags[n] - low_];
         if (place >= 0) return Index(n);
         place = Index32(n);
       }
@@ -48,7 +48,7 @@ class TagPlaces {
 
   /// -1 where there is no such number.
   [[nodiscard]] Index find(std::int64_t tag) const {
-    if (!table_.empty()) return tag < low_ || tag - low_ >= Index(table_.size()) ? -1 : table_[std::size_t(tag - low_)];
+    if (!table_.empty()) return tag < low_ || tag - low_ >= Index(table_.size()) ? -1 : table_[tag - low_];
     auto const at = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair(tag, Index32(-1)));
     return at == sorted_.end() || at->first != tag ? -1 : at->second;
   }
@@ -135,8 +135,8 @@ class Parser {
     auto const twice = places_.set(out_.tag);
     if (twice < 0) return;
     // Blocks of version 4.1 have all numbers before the coordinates.
-    std::size_t const at = std::size_t(twice) < out_.at.size() ? out_.at[std::size_t(twice)] : text_.at();
-    text_.fail_at(at, "node " + std::to_string(out_.tag[std::size_t(twice)]) + " is there twice");
+    std::size_t const at = std::size_t(twice) < out_.at.size() ? out_.at[twice] : text_.at();
+    text_.fail_at(at, "node " + std::to_string(out_.tag[twice]) + " is there twice");
   }
 
   void old_nodes(bool with_parameters) {
@@ -196,9 +196,9 @@ class Parser {
   }
 
   void reserve_nodes(Index n) {
-    out_.tag.reserve(std::size_t(n));
+    out_.tag.reserve(n);
     out_.coordinates.reserve(3 * std::size_t(n));
-    out_.at.reserve(std::size_t(n));
+    out_.at.reserve(n);
   }
 
   Index32 node(std::int64_t tag, std::size_t at, char const* of, std::int64_t number) const {
@@ -359,7 +359,7 @@ class Parser {
     std::array<Index, 4> n{};
     for (Index& count : n) count = text_.count("the number of pieces of geometry", 4, true);
     for (int dimension = 0; dimension <= most_dimensions; ++dimension)
-      for (Index k = 0; k < n[std::size_t(dimension)]; ++k) {
+      for (Index k = 0; k < n[dimension]; ++k) {
         std::int64_t const tag = text_.number32("the number of a piece of geometry");
         Group piece{dimension, tag, {}};
         more(piece);
@@ -400,7 +400,7 @@ class Parser {
       if (n_affine != 0 && n_affine != 16)
         text_.fail("a periodic transform has " + std::to_string(n_affine) + " entries instead of 16");
       if (n_affine == 16) link.affine.emplace();
-      for (Index a = 0; a < n_affine; ++a) (*link.affine)[std::size_t(a)] = affine_entry(words);
+      for (Index a = 0; a < n_affine; ++a) (*link.affine)[a] = affine_entry(words);
       Index const n_pairs = count("the number of periodic nodes", 4);
       for (Index p = 0; p < n_pairs; ++p) {
         std::array<Index32, 2> pair{};

@@ -36,8 +36,7 @@ int dimension_of(File const& file) {
 /// ...).
 std::vector<Index32> mesh_nodes(File const& file, int dimension, Index& n_nodes) {
   return io::used_nodes(
-      file.nodes, file.tag.size(),
-      [&](Index e) { return file.groups[std::size_t(file.group[std::size_t(e)])].dimension == dimension; }, n_nodes);
+      file.nodes, file.tag.size(), [&](Index e) { return file.groups[file.group[e]].dimension == dimension; }, n_nodes);
 }
 
 class Builder {
@@ -69,7 +68,7 @@ class Builder {
   }
 
  private:
-  [[nodiscard]] Group const& group_of(Index e) const { return file_.groups[std::size_t(file_.group[std::size_t(e)])]; }
+  [[nodiscard]] Group const& group_of(Index e) const { return file_.groups[file_.group[e]]; }
 
   void coordinates() {
     mesh_.coordinates = Coordinates(mesh_.n_nodes());
@@ -91,7 +90,7 @@ class Builder {
                    file_.groups[g].dimension >= mesh_.dimension - 1;
     std::map<std::vector<Index32>, Index> first;
     for (Index e = 0; e < file_.nodes.size(); ++e) {
-      if (several[std::size_t(file_.group[std::size_t(e)])] == 0) continue;
+      if (several[file_.group[e]] == 0) continue;
       auto const nodes = file_.nodes[e];
       std::vector<Index32> key(nodes.begin(), nodes.end());
       std::sort(key.begin(), key.end());
@@ -114,13 +113,13 @@ class Builder {
     std::vector<Index32> row;
     for (Index e = 0; e < file_.nodes.size(); ++e) {
       if (group_of(e).dimension != mesh_.dimension || is_repeated(e)) continue;
-      auto const shape = io::gmsh_shape(file_.type[std::size_t(e)]);
+      auto const shape = io::gmsh_shape(file_.type[e]);
       auto const nodes = file_.nodes[e];
       row.clear();
       for (std::size_t k = 0; k < nodes.size(); ++k)
-        row.push_back(number_[std::size_t(nodes[shape.order.empty() ? k : shape.order[k]])]);
+        row.push_back(number_[nodes[shape.order.empty() ? k : shape.order[k]]]);
       mesh_.add_element(shape.type, row);
-      if (numbered) mesh_.elements.number.push_back(Index32(tags[std::size_t(e)]));
+      if (numbered) mesh_.elements.number.push_back(Index32(tags[e]));
     }
   }
 
@@ -138,8 +137,8 @@ class Builder {
       auto const& group = group_of(e);
       if (group.dimension != dimension || group.between_parts || is_repeated(e)) continue;
       face.clear();
-      auto const corners = file_.nodes[e].first(std::size_t(io::gmsh_shape(file_.type[std::size_t(e)]).corners));
-      for (Index32 const n : corners) face.push_back(number_[std::size_t(n)]);
+      auto const corners = file_.nodes[e].first(std::size_t(io::gmsh_shape(file_.type[e]).corners));
+      for (Index32 const n : corners) face.push_back(number_[n]);
       if (std::find(face.begin(), face.end(), -1) != face.end()) {
         ++loose_;
         continue;
@@ -176,7 +175,7 @@ class Builder {
       c.zone = c.donor_zone = 0;
       std::vector<Vec3> from, to;
       for (auto const& [image, master] : link.nodes) {
-        Index32 const own = number_[std::size_t(image)], donor = number_[std::size_t(master)];
+        Index32 const own = number_[image], donor = number_[master];
         if (own < 0 || donor < 0 || own == donor) continue;
         c.nodes.push_back(own);
         c.donor_nodes.push_back(donor);
@@ -209,7 +208,7 @@ class Builder {
     auto const& a = *link.affine;
     RigidTransform t;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) t.rotation.m[i][j] = a[std::size_t(4 * i + j)];
+      for (int j = 0; j < 3; ++j) t.rotation.m[i][j] = a[4 * i + j];
     t.translation = {a[3], a[7], a[11]};
     constexpr double round_off = 1e-6;
     for (int i = 0; i < 3; ++i)

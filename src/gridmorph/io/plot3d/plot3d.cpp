@@ -155,7 +155,7 @@ void read_coordinates(std::string const& path, File const& file, cgns::Layout co
       double* const dest = flat[c] + zone.first_node;
       double* to = dest;
       if (axis >= 0) {
-        plane.resize(std::size_t(data.nodes()));
+        plane.resize(data.nodes());
         to = plane.data();
       }
       if (file.formatted()) {

@@ -74,16 +74,16 @@ class Builder {
     Index const n = Index(z.coordinates.size()) / z.dimension;
     if (n == 0 || z.vtk.empty()) return problems.add(where + " has no points or no elements");
     int const number = mesh_.add_zone(z.name, n);
-    Index const first = mesh_.zones[std::size_t(number)].first_node;
+    Index const first = mesh_.zones[number].first_node;
     std::array<Index32, max_corners> list{};
     for (std::size_t e = 0; e < z.vtk.size(); ++e) {
       int const size = int(z.start[e + 1] - z.start[e]);
       for (int k = 0; k < size; ++k) {
-        auto const node = z.nodes[std::size_t(z.start[e] + k)];
+        auto const node = z.nodes[z.start[e] + k];
         if (node < 0 || node >= n)
           return problems.add(where + ": element " + std::to_string(e) + " has node " + std::to_string(node) +
                               ", but there are " + std::to_string(n) + " points, numbered from 0");
-        list[std::size_t(k)] = Index32(node + first);
+        list[k] = Index32(node + first);
       }
       mesh_.add_element(element_type(z.vtk[e]), std::span<Index32 const>(list.data(), std::size_t(size)));
     }
@@ -103,7 +103,7 @@ class Builder {
 
   /// Node of a marker in the mesh; -1 and a problem where it is none.
   Index32 node_of(int z, Marker const& m, std::int64_t node, Problems& problems) {
-    auto const& zone = mesh_.zones[std::size_t(z)];
+    auto const& zone = mesh_.zones[z];
     if (node >= 0 && node < zone.size()) return Index32(node + zone.first_node);
     problems.add(path_ + ":" + std::to_string(m.line) + ": marker '" + m.name + "' has node " + std::to_string(node) +
                  ", but there are " + std::to_string(zone.size()) + " points, numbered from 0");
@@ -112,7 +112,7 @@ class Builder {
 
   void markers(int z, Problems& problems) {
     bool by_name = false;
-    for (auto const& m : zones_[std::size_t(z)].markers) {
+    for (auto const& m : zones_[z].markers) {
       if (m.name == "SEND_RECEIVE") continue;
       Patch patch;
       patch.name = m.name;
@@ -123,7 +123,7 @@ class Builder {
       for (std::size_t e = 0; e < m.vtk.size(); ++e) {
         face.clear();
         for (Index k = m.start[e]; k < m.start[e + 1]; ++k) {
-          Index32 const node = node_of(z, m, m.nodes[std::size_t(k)], problems);
+          Index32 const node = node_of(z, m, m.nodes[k], problems);
           if (node < 0) return;
           face.push_back(node);
         }
@@ -148,7 +148,7 @@ class Builder {
   /// SEND_RECEIVE markers: the k-th node of the one that sends to a rank pairs with the k-th of the one that receives
   /// from it. Those of one PERIODIC_INDEX become a connection.
   void periodic(int z, Problems& problems) {
-    auto const& text = zones_[std::size_t(z)];
+    auto const& text = zones_[z];
     std::map<int, Connection> by_transform;
     for (auto const& send : text.markers) {
       if (send.name != "SEND_RECEIVE" || send.send_to <= 0) continue;
@@ -179,7 +179,7 @@ class Builder {
     for (auto& [index, c] : by_transform) {
       c.name = "PERIODIC_INDEX " + std::to_string(index);
       c.zone = c.donor_zone = z;
-      if (index > 0) c.periodic = transform(text.periodic[std::size_t(index)]);
+      if (index > 0) c.periodic = transform(text.periodic[index]);
       double const tolerance = place_tolerance(1e-6, mesh_.size(), coordinate_resolution(mesh_));
       double const mismatch = largest_mismatch(mesh_, c);
       if (mismatch > tolerance) std::swap(c.nodes, c.donor_nodes);
@@ -216,7 +216,7 @@ bool is_su2(std::string const& path) {
   constexpr int most_lines = 200;  // of comments at the head
   constexpr std::streamsize longest = 4096;
   for (int n = 0; n < most_lines; ++n) {
-    line.assign(std::size_t(longest), '\0');
+    line.assign(longest, '\0');
     if (!file.getline(line.data(), longest)) return false;
     line.resize(std::strlen(line.c_str()));
     auto const first = line.find_first_not_of(" \t\r");
@@ -247,7 +247,7 @@ void write_morphed(std::string const& input, std::string const& output, Mesh con
   auto const zones = parse(input, text, notes, [&](CoordinateText const& c) {
     same = same && c.zone < mesh.zones.size() && c.point < mesh.zones[c.zone].size();
     if (!same) return;
-    double const value = arrays[std::size_t(c.component)][mesh.zones[c.zone].first_node + c.point];
+    double const value = arrays[c.component][mesh.zones[c.zone].first_node + c.point];
     if (std::memcmp(&value, &c.value, sizeof value) == 0) return;
     std::array<char, 32> digits{};
     auto const end =

@@ -305,7 +305,7 @@ class Reader {
   }
 
   void elements(ElementType type, Index n) {
-    std::vector<Index32> row(std::size_t(n_corners(type))), listed(row.size());
+    std::vector<Index32> row(n_corners(type)), listed(row.size());
     std::string const name(to_string(type));
     for (Index e = 0; e < n; ++e) {
       for (Index32& v : listed) v = node(name.c_str(), e);
@@ -321,7 +321,7 @@ class Reader {
     Index balance = 0;
     auto const each = [&](auto const& visit) {
       for (Index e = 0; e < elements.size(); ++e)
-        if (elements.type[std::size_t(e)] == ElementType::pyramid) visit(e);
+        if (elements.type[e] == ElementType::pyramid) visit(e);
     };
     each([&](Index e) {
       auto const n = elements.nodes[e];
@@ -329,10 +329,7 @@ class Reader {
       balance += dot(cross(x(2) - x(0), x(3) - x(1)), x(4) - x(0)) > 0 ? 1 : -1;
     });
     if (balance >= 0) return;
-    each([&](Index e) {
-      std::swap(item[std::size_t(elements.nodes.first[std::size_t(e)] + 1)],
-                item[std::size_t(elements.nodes.first[std::size_t(e)] + 3)]);
-    });
+    each([&](Index e) { std::swap(item[elements.nodes.first[e] + 1], item[elements.nodes.first[e] + 3]); });
     mesh_.notes.push_back(path_ + ": the bases of pyramids are numbered the other way round; taken so");
   }
 

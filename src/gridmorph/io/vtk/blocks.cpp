@@ -124,7 +124,7 @@ class Blocks {
         row.clear();
         if (end < begin || end > std::int64_t(nodes.size()))
           file.fail(*cells, "offsets do not fit what 'connectivity' holds");
-        for (; begin < end; ++begin) row.push_back(point(leaf, *cells, nodes[std::size_t(begin)]));
+        for (; begin < end; ++begin) row.push_back(point(leaf, *cells, nodes[begin]));
         leaf.faces.add(row);
       }
       return;
@@ -133,7 +133,7 @@ class Blocks {
     leaf.coordinates = leaf.grid.coordinates;
     std::vector<Index32> row;
     for (Index c = 0; c < leaf.grid.n_cells; ++c) {
-      std::uint8_t const type = leaf.grid.type[std::size_t(c)];
+      std::uint8_t const type = leaf.grid.type[c];
       auto const shape = io::vtk_shape(type);
       if (dimension_of_cell(type) != leaf.dimension || (shape.corners == 0 && type != polygon)) continue;
       auto const nodes = leaf.grid.nodes[c];
@@ -205,7 +205,7 @@ std::vector<std::vector<Index32>> nodes_at(Leaf const& leaf, Mesh const& mesh, C
   if (!(tolerance > 0)) return out;
   PointFinder const finder(leaf.coordinates, tolerance);
   for (Index n = 0; n < places.size(); ++n)
-    finder.each_at(places[n], [&](Index32 point) { out[std::size_t(point)].push_back(Index32(n)); });
+    finder.each_at(places[n], [&](Index32 point) { out[point].push_back(Index32(n)); });
   return out;
 }
 
@@ -220,7 +220,7 @@ void add_surface(Mesh& mesh, Leaf const& leaf) {
       auto const& zone = mesh.zones[z];
       row.clear();
       for (Index32 const point : leaf.faces[f])
-        for (Index32 const n : nodes[std::size_t(point)])
+        for (Index32 const n : nodes[point])
           if (n >= zone.first_node && n < zone.first_node + zone.size()) {
             row.push_back(n);
             break;

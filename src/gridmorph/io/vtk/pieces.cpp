@@ -99,7 +99,7 @@ class Joiner {
       Connection c;
       c.zone = zones.first;
       c.donor_zone = zones.second;
-      c.name = mesh_.zones[std::size_t(c.zone)].name + " to " + mesh_.zones[std::size_t(c.donor_zone)].name;
+      c.name = mesh_.zones[c.zone].name + " to " + mesh_.zones[c.donor_zone].name;
       for (auto const& [own, donor] : pairs) {
         c.nodes.push_back(own);
         c.donor_nodes.push_back(donor);
@@ -109,17 +109,14 @@ class Joiner {
   }
 
  private:
-  [[nodiscard]] int zone(Index32 face) const {
-    return mesh_.zone_of_element(topology_.boundary.element[std::size_t(face)]);
-  }
+  [[nodiscard]] int zone(Index32 face) const { return mesh_.zone_of_element(topology_.boundary.element[face]); }
   /// Numbers of the places of corners and nodes amid edges, in order, each with its node.
   [[nodiscard]] std::vector<std::pair<int, Index32>> nodes(Index32 face) {
     std::vector<std::pair<int, Index32>> out;
     auto const add = [&](Index32 n) { out.emplace_back(numbers_.find_or_add(mesh_.coordinates[n], int(n)), n); };
     BoundaryFaces const& faces = topology_.boundary;
     for (Index32 const n : faces.nodes[face]) add(n);
-    for (auto const& m : side_middles(mesh_, faces.element[std::size_t(face)], faces.side[std::size_t(face)]))
-      add(m.node);
+    for (auto const& m : side_middles(mesh_, faces.element[face], faces.side[face])) add(m.node);
     std::sort(out.begin(), out.end());
     return out;
   }

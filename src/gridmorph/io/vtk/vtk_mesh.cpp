@@ -27,8 +27,8 @@ constexpr char const* displacement_name = "Displacement";
 /// Number in the mesh of each point; -1 for those that no cell of its dimension uses.
 std::vector<Index32> mesh_nodes(Grid const& grid, int dimension, Index& n_nodes) {
   return io::used_nodes(
-      grid.nodes, std::size_t(grid.n_points),
-      [&](Index e) { return dimension_of_cell(grid.type[std::size_t(e)]) == dimension; }, n_nodes);
+      grid.nodes, std::size_t(grid.n_points), [&](Index e) { return dimension_of_cell(grid.type[e]) == dimension; },
+      n_nodes);
 }
 
 class Builder {
@@ -70,10 +70,10 @@ class Builder {
     std::vector<Index32> row;
     std::int64_t begin = 0;
     for (Index c = 0; c < grid_.n_cells; ++c) {
-      std::uint8_t const type = grid_.type[std::size_t(c)];
+      std::uint8_t const type = grid_.type[c];
       if (type == polyhedron) {
         add_polyhedron(c, begin, polyhedra);
-        begin = grid_.faces_end[std::size_t(c)];
+        begin = grid_.faces_end[c];
         continue;
       }
       if (dimension_of_cell(type) != mesh_.dimension) continue;
@@ -84,7 +84,7 @@ class Builder {
       auto const nodes = grid_.nodes[c];
       row.clear();
       for (std::size_t k = 0; k < nodes.size(); ++k)
-        row.push_back(number_[std::size_t(nodes[shape.order.empty() ? k : shape.order[k]])]);
+        row.push_back(number_[nodes[shape.order.empty() ? k : shape.order[k]]]);
       mesh_.add_element(shape.type, row);
       mesh_.elements.number.push_back(Index32(c));
     }
@@ -95,15 +95,14 @@ class Builder {
     Vec3 middle;
     for (Index32 const n : grid_.nodes[c]) middle += (1 / double(grid_.nodes[c].size())) * place(std::size_t(n));
     std::vector<Index32> face;
-    std::int64_t const n_faces = grid_.faces[std::size_t(at++)];
+    std::int64_t const n_faces = grid_.faces[at++];
     for (std::int64_t f = 0; f < n_faces; ++f) {
       face.clear();
-      std::int64_t const n = grid_.faces[std::size_t(at++)];
+      std::int64_t const n = grid_.faces[at++];
       Vec3 area, centre;
-      Vec3 const first = place(std::size_t(grid_.faces[std::size_t(at)]));
+      Vec3 const first = place(std::size_t(grid_.faces[at]));
       for (std::int64_t k = 0; k < n; ++k) {
-        auto const own = std::size_t(grid_.faces[std::size_t(at + k)]),
-                   next = std::size_t(grid_.faces[std::size_t(at + (k + 1) % n)]);
+        auto const own = std::size_t(grid_.faces[at + k]), next = std::size_t(grid_.faces[at + (k + 1) % n]);
         if (number_[own] < 0)
           throw MeshError(file_.path() + ": a face of cell " + std::to_string(c) + " has node " + std::to_string(own) +
                           ", and the cell does not list it");
@@ -122,25 +121,25 @@ class Builder {
     std::map<std::int64_t, std::size_t> known;
     std::vector<Index32> face;
     for (Index c = 0; c < grid_.n_cells; ++c) {
-      std::uint8_t const type = grid_.type[std::size_t(c)];
+      std::uint8_t const type = grid_.type[c];
       if (dimension_of_cell(type) != mesh_.dimension - 1 || type == triangle_strip) continue;
       auto const corners = io::vtk_shape(type).corners;
       auto const order = io::vtk_shape(type).order;
       auto const nodes = grid_.nodes[c];
       face.clear();
       for (std::size_t k = 0; k < (corners > 0 ? std::size_t(corners) : nodes.size()); ++k)
-        face.push_back(number_[std::size_t(nodes[order.empty() ? k : order[k]])]);
+        face.push_back(number_[nodes[order.empty() ? k : order[k]]]);
       if (face.size() < (mesh_.dimension == 3 ? 3U : 2U) || std::find(face.begin(), face.end(), -1) != face.end()) {
         ++loose_;
         continue;
       }
-      std::int64_t const number = markers ? markers->of_cell[std::size_t(c)] : 0;
+      std::int64_t const number = markers ? markers->of_cell[c] : 0;
       auto const [at, is_new] = known.try_emplace(number, mesh_.patches.size());
       if (is_new) {
         Patch patch;
         patch.zone = 0;
         bool const named = markers && number >= 1 && std::size_t(number) <= markers->names.size();
-        patch.name = named     ? markers->names[std::size_t(number) - 1]
+        patch.name = named     ? markers->names[number - 1]
                      : markers ? markers->array + " " + std::to_string(number)
                                : "surface";
         patch.kind = io::kind_by_name(patch.name);
@@ -182,8 +181,7 @@ void append(Mesh& all, Mesh const& one, std::string const& name) {
     for (Index32& n : row) n += Index32(first);
     return std::span<Index32 const>(row);
   };
-  for (Index e = 0; e < one.n_elements(); ++e)
-    all.add_element(one.elements.type[std::size_t(e)], moved(one.elements.nodes[e]));
+  for (Index e = 0; e < one.n_elements(); ++e) all.add_element(one.elements.type[e], moved(one.elements.nodes[e]));
   all.elements.number.insert(all.elements.number.end(), one.elements.number.begin(), one.elements.number.end());
   auto& p = all.polyhedra;
   if (!one.polyhedra.element.empty() && p.first_face.empty()) p.first_face.push_back(0);
@@ -220,12 +218,12 @@ void add_fields(XmlFile const& file, Grid const& grid, std::vector<Index32> cons
     auto const& own = field.values;
     std::vector<double> values(number.size(), none);
     for (std::size_t n = 0; n < number.size(); ++n)
-      if (number[n] >= 0) values[n] = own[std::size_t(number[n])];
+      if (number[n] >= 0) values[n] = own[number[n]];
     points += file.array_text(prefixes.points + field.name, 1, values, *grid.points);
   }
   for (auto const& field : fields.cells) {
     auto const& own = field.values;
-    std::vector<double> values(std::size_t(grid.n_cells), none);
+    std::vector<double> values(grid.n_cells, none);
     for (std::size_t c = 0, e = 0; c < values.size(); ++c)
       if (dimension_of_cell(grid.type[c]) == dimension) values[c] = own[e++];
     cells += file.array_text(prefixes.cells + field.name, 1, values, *grid.points);

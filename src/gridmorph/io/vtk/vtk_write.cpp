@@ -48,7 +48,7 @@ class Writer {
       auto const topology = make_topology(mesh);
       auto const of_face = find_face_patches(mesh, topology);
       for (Index f = 0; f < topology.boundary.size(); ++f)
-        if (int const p = of_face.patch[std::size_t(f)]; p >= 0 && lists_nodes(mesh.patches[std::size_t(p)]))
+        if (int const p = of_face.patch[f]; p >= 0 && lists_nodes(mesh.patches[p]))
           face(topology.boundary.nodes[f], std::size_t(p));
     }
   }
@@ -96,7 +96,7 @@ class Writer {
 
   void element(Index e, std::string const& path) {
     auto const nodes = mesh_.elements.nodes[e];
-    ElementType const type = mesh_.elements.type[std::size_t(e)];
+    ElementType const type = mesh_.elements.type[e];
     std::uint8_t const number = vtk_type(type, nodes.size());
     if (number == 0)
       throw IoError(path + ": " + describe_element(mesh_, e) + " of " + std::to_string(nodes.size()) +

@@ -42,18 +42,18 @@ void check_faces(XmlFile const& file, Tag const& cells, Grid const& grid) {
     file.fail(cells, "faces of cell " + std::to_string(c) + " do not fit what 'faces' and 'faceoffsets' hold");
   };
   for (Index c = 0; c < grid.n_cells; ++c) {
-    std::int64_t const end = grid.faces_end[std::size_t(c)];
-    if (grid.type[std::size_t(c)] != polyhedron) continue;
+    std::int64_t const end = grid.faces_end[c];
+    if (grid.type[c] != polyhedron) continue;
     if (end <= begin || end > std::int64_t(grid.faces.size())) bad(c);
     std::int64_t at = begin + 1;
-    for (std::int64_t f = 0; f < grid.faces[std::size_t(begin)]; ++f) {
+    for (std::int64_t f = 0; f < grid.faces[begin]; ++f) {
       if (at >= end) bad(c);
-      std::int64_t const n = grid.faces[std::size_t(at++)];
+      std::int64_t const n = grid.faces[at++];
       if (n < 3 || n > end - at) bad(c);
       for (std::int64_t k = 0; k < n; ++k, ++at)
-        if (grid.faces[std::size_t(at)] < 0 || grid.faces[std::size_t(at)] >= grid.n_points) bad(c);
+        if (grid.faces[at] < 0 || grid.faces[at] >= grid.n_points) bad(c);
     }
-    if (at != end || grid.faces[std::size_t(begin)] < 4) bad(c);
+    if (at != end || grid.faces[begin] < 4) bad(c);
     begin = end;
   }
 }
@@ -64,25 +64,25 @@ void read_shared_faces(XmlFile const& file, Tag const& cells, Grid& grid) {
   auto const nodes_end = file.integers(need_array(file, cells, "face_offsets"));
   auto const faces = file.integers(need_array(file, cells, "polyhedron_to_faces"));
   auto const faces_end = file.integers(need_array(file, cells, "polyhedron_offsets"), grid.n_cells);
-  grid.faces_end.assign(std::size_t(grid.n_cells), -1);
+  grid.faces_end.assign(grid.n_cells, -1);
   std::int64_t at = 0;
   for (Index c = 0; c < grid.n_cells; ++c) {
-    std::int64_t const end = faces_end[std::size_t(c)];
+    std::int64_t const end = faces_end[c];
     auto const bad = [&](std::string const& what) { file.fail(cells, "cell " + std::to_string(c) + ": " + what); };
     if (end < at || end > std::int64_t(faces.size()))
       bad("its faces end at " + std::to_string(end) + " of the " + std::to_string(faces.size()) +
           " of 'polyhedron_to_faces'");
-    if (grid.type[std::size_t(c)] != polyhedron) {
+    if (grid.type[c] != polyhedron) {
       if (end != at) bad("has faces, and is no polyhedron");
       continue;
     }
     grid.faces.push_back(end - at);
     for (; at < end; ++at) {
-      std::int64_t const f = faces[std::size_t(at)];
+      std::int64_t const f = faces[at];
       if (f < 0 || f >= std::int64_t(nodes_end.size()))
         bad("has face " + std::to_string(f) + ", and there are " + std::to_string(nodes_end.size()) +
             ", counted from 0");
-      std::int64_t const begin = f == 0 ? 0 : nodes_end[std::size_t(f) - 1], last = nodes_end[std::size_t(f)];
+      std::int64_t const begin = f == 0 ? 0 : nodes_end[f - 1], last = nodes_end[f];
       if (begin < 0 || last < begin || last > std::int64_t(nodes.size()))
         bad("face " + std::to_string(f) + " has nodes " + std::to_string(begin) + " to " + std::to_string(last) +
             " of the " + std::to_string(nodes.size()) + " of 'face_connectivity'");
@@ -92,7 +92,7 @@ void read_shared_faces(XmlFile const& file, Tag const& cells, Grid& grid) {
       grid.faces.push_back(last - begin);
       grid.faces.insert(grid.faces.end(), nodes.begin() + begin, nodes.begin() + last);
     }
-    grid.faces_end[std::size_t(c)] = std::int64_t(grid.faces.size());
+    grid.faces_end[c] = std::int64_t(grid.faces.size());
   }
 }
 
@@ -145,7 +145,7 @@ Grid read_piece(XmlFile const& file, Tag const& piece) {
   auto const connectivity = file.integers(need_array(file, cells, "connectivity"));
   std::int64_t begin = 0;
   for (Index c = 0; c < out.n_cells; ++c) {
-    std::int64_t const type = types[std::size_t(c)], end = offsets[std::size_t(c)];
+    std::int64_t const type = types[c], end = offsets[c];
     std::string const which = "cell " + std::to_string(c);
     int const dimension = type < 0 || type > 255 ? -1 : dimension_of_cell(std::uint8_t(type));
     if (dimension < 0)
@@ -161,7 +161,7 @@ Grid read_piece(XmlFile const& file, Tag const& piece) {
     if (wanted == 0 && dimension >= 2 && end - begin < 3)
       file.fail(cells, which + " has " + std::to_string(end - begin) + " nodes");
     for (; begin < end; ++begin) {
-      std::int64_t const n = connectivity[std::size_t(begin)];
+      std::int64_t const n = connectivity[begin];
       if (n < 0 || n >= out.n_points)
         file.fail(cells, which + " has node " + std::to_string(n) + ", and there are " + std::to_string(out.n_points) +
                              ", counted from 0");

@@ -44,9 +44,9 @@ class Sides {
     for (int b = 0; b < int(blocks.zones.size()); ++b)
       for (int axis = 0; axis < 3; ++axis)
         for (int end = 0; end < 2; ++end) {
-          Index3 const& e = blocks.zones[std::size_t(b)].extent;
+          Index3 const& e = blocks.zones[b].extent;
           std::array<int, 2> const along{axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
-          std::array<int, 2> const cells{e[std::size_t(along[0])] - 1, e[std::size_t(along[1])] - 1};
+          std::array<int, 2> const cells{e[along[0]] - 1, e[along[1]] - 1};
           sides_.push_back({b, axis, end, along, cells, {}});
           sides_.back().behind.resize(std::size_t(cells[0]) * std::size_t(cells[1]));
         }
@@ -62,14 +62,14 @@ class Sides {
   void look_around(Index32 e) {
     Orientation const& axes = places_.axes(e);
     Index3 const& p = places_.at(e);
-    Index3 const& extent = blocks_.zones[std::size_t(places_.block(e))].extent;
+    Index3 const& extent = blocks_.zones[places_.block(e)].extent;
     for (int s = 0; s < 6; ++s) {
-      auto const local = std::size_t(side_axis[std::size_t(s)]);
+      auto const local = std::size_t(side_axis[s]);
       int const axis = axes.axis[local];
-      int const end = axes.sign[local] > 0 ? side_end[std::size_t(s)] : 1 - side_end[std::size_t(s)];
-      if (p[std::size_t(axis)] != (end == 0 ? 0 : extent[std::size_t(axis)] - 2)) continue;
-      BlockSide& side = sides_[std::size_t(6 * places_.block(e) + 2 * axis + end)];
-      side.at(p[std::size_t(side.along[0])], p[std::size_t(side.along[1])]) = what_is_behind(e, s);
+      int const end = axes.sign[local] > 0 ? side_end[s] : 1 - side_end[s];
+      if (p[axis] != (end == 0 ? 0 : extent[axis] - 2)) continue;
+      BlockSide& side = sides_[6 * places_.block(e) + 2 * axis + end];
+      side.at(p[side.along[0]], p[side.along[1]]) = what_is_behind(e, s);
     }
   }
 
@@ -95,15 +95,14 @@ class Sides {
     out.patch = patch_of(f);
     return out;
   }
-  [[nodiscard]] int patch_of(Index32 face) const { return std::max(-1, face_patches_.patch[std::size_t(face)]); }
+  [[nodiscard]] int patch_of(Index32 face) const { return std::max(-1, face_patches_.patch[face]); }
 
   [[nodiscard]] Behind across(Index32 e, int s, HexLink const& link) const {
     Behind out;
     out.block = places_.block(link.cell);
     out.to_donor.orientation = places_.axes(e).inverse().then(link.turn->axes).then(places_.axes(link.cell));
     int const corner = corners_of_side(s)[0];
-    Index3 const here = places_.node(e, corner),
-                 there = places_.node(link.cell, link.turn->corner[std::size_t(corner)]),
+    Index3 const here = places_.node(e, corner), there = places_.node(link.cell, link.turn->corner[corner]),
                  step = out.to_donor.orientation.apply(here);
     for (std::size_t a = 0; a < 3; ++a) out.to_donor.donor_origin[a] = there[a] - step[a];
     return out;
@@ -130,15 +129,15 @@ class Sides {
 
   void add(BlockSide const& side, Behind const& what, std::array<int, 2> const& from, std::array<int, 2> const& to) {
     IndexRange range;
-    int const plane = side.end == 0 ? 0 : blocks_.zones[std::size_t(side.block)].extent[std::size_t(side.axis)] - 1;
-    range.begin[std::size_t(side.axis)] = plane;
-    range.end[std::size_t(side.axis)] = plane + 1;
+    int const plane = side.end == 0 ? 0 : blocks_.zones[side.block].extent[side.axis] - 1;
+    range.begin[side.axis] = plane;
+    range.end[side.axis] = plane + 1;
     for (std::size_t k = 0; k < 2; ++k) {
-      range.begin[std::size_t(side.along[k])] = from[k];
-      range.end[std::size_t(side.along[k])] = to[k] + 1;
+      range.begin[side.along[k]] = from[k];
+      range.end[side.along[k]] = to[k] + 1;
     }
     if (what.patch >= 0) {
-      Patch const& of = mesh_.patches[std::size_t(what.patch)];
+      Patch const& of = mesh_.patches[what.patch];
       Patch patch;
       patch.name = of.name;
       patch.bc_type = of.bc_type;
@@ -158,14 +157,14 @@ class Sides {
     out.to_donor = {what.to_donor.orientation, range.begin, what.to_donor(range.begin)};
     out.name = "interface " + std::to_string(blocks_.interfaces.size() + 1);
     if (what.connection >= 0) {
-      Connection const& c = mesh_.connections[std::size_t(what.connection)];
+      Connection const& c = mesh_.connections[what.connection];
       out.name = c.name;
       out.families = c.families;
-      out.zone_in_file = mesh_.zones[std::size_t(c.zone)].name;
+      out.zone_in_file = mesh_.zones[c.zone].name;
       out.periodic = c.periodic;
       // Rules that name what lists the same faces go on doing so.
       for (int const p : what.on_patches)
-        if (p >= 0) add_names(mesh_.patches[std::size_t(p)], out.families);
+        if (p >= 0) add_names(mesh_.patches[p], out.families);
       for (Connection const& other : mesh_.connections)
         if (&other != &c && other.periodic && same_nodes(other.nodes, c.donor_nodes)) add_names(other, out.families);
     }
@@ -173,7 +172,7 @@ class Sides {
   }
 
   [[nodiscard]] std::string const& zone_in_file(Patch const& of) const {
-    return of.zone_in_file.empty() ? mesh_.zones[std::size_t(of.zone)].name : of.zone_in_file;
+    return of.zone_in_file.empty() ? mesh_.zones[of.zone].name : of.zone_in_file;
   }
 
   static bool same_nodes(std::vector<Index32> const& of_a, std::vector<Index32> const& of_b) {

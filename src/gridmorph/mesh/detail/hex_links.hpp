@@ -21,7 +21,7 @@ inline constexpr std::array<std::array<int, 2>, 3> side_at{{{4, 2}, {1, 3}, {0, 
 /// The corners of a side in the order of face_corner().
 inline std::array<int, 4> corners_of_side(int side) {
   std::array<int, 4> out{};
-  for (int k = 0; k < 4; ++k) out[std::size_t(k)] = face_corner(ElementType::hexahedron, side, k);
+  for (int k = 0; k < 4; ++k) out[k] = face_corner(ElementType::hexahedron, side, k);
   return out;
 }
 
@@ -51,31 +51,27 @@ class HexLinks {
   /// Nodes that connections join, periodic ones left out, count as one.
   HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology);
 
-  [[nodiscard]] bool is_hexahedron(Index32 cell) const {
-    return mesh_.elements.type[std::size_t(cell)] == ElementType::hexahedron;
-  }
+  [[nodiscard]] bool is_hexahedron(Index32 cell) const { return mesh_.elements.type[cell] == ElementType::hexahedron; }
   /// The node that stands for those that connections, periodic ones left out, declare to be one.
-  [[nodiscard]] Index32 representative(Index32 node) const { return representative_[std::size_t(node)]; }
+  [[nodiscard]] Index32 representative(Index32 node) const { return representative_[node]; }
   /// That of corner c.
   [[nodiscard]] Index32 node(Index32 cell, int corner) const {
-    return representative(mesh_.elements.nodes[cell][std::size_t(corner)]);
+    return representative(mesh_.elements.nodes[cell][corner]);
   }
   /// What lies behind a side inside the mesh; -1: nothing.
-  [[nodiscard]] CellSide behind(CellSide s) const { return partner_[std::size_t(s)]; }
+  [[nodiscard]] CellSide behind(CellSide s) const { return partner_[s]; }
   /// The link of a side that has something behind it.
-  [[nodiscard]] HexLink link(CellSide s) const { return made(s, partner_[std::size_t(s)], turn_[std::size_t(s)]); }
+  [[nodiscard]] HexLink link(CellSide s) const { return made(s, partner_[s], turn_[s]); }
   /// The number of a side among the boundary faces; -1 where it is none.
-  [[nodiscard]] Index32 boundary_face(CellSide s) const { return face_[std::size_t(s)]; }
+  [[nodiscard]] Index32 boundary_face(CellSide s) const { return face_[s]; }
   /// Across a periodic connection; nothing where a side lies on none.
   [[nodiscard]] std::optional<HexLink> periodic(CellSide s) const;
   /// The connection of a boundary face: 2 c, or 2 c + 1 from the donor's side.
-  [[nodiscard]] Index32 connection(CellSide s) const {
-    return topology_.boundary.connection[std::size_t(boundary_face(s))];
-  }
+  [[nodiscard]] Index32 connection(CellSide s) const { return topology_.boundary.connection[boundary_face(s)]; }
 
  private:
   static HexLink made(CellSide from, CellSide to, int turn) {
-    return {to / 6, to % 6, &side_turns[std::size_t(48 * (from % 6) + 8 * (to % 6) + turn)]};
+    return {to / 6, to % 6, &side_turns[48 * (from % 6) + 8 * (to % 6) + turn]};
   }
   /// The way in which the corners of one side are those of another, by `same(node of this, node of that)`; -1: they are
   /// not.

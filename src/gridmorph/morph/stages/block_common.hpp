@@ -156,20 +156,20 @@ struct CommonPartOfBlocks {
   }
   static std::vector<Index32> slots_of(Plan const& plan, CommonPart const& part) {
     std::vector<Index32> out;
-    for (Index32 const k : part.boundary) out.push_back(Index32(plan.boundary_slots[std::size_t(k)]));
+    for (Index32 const k : part.boundary) out.push_back(Index32(plan.boundary_slots[k]));
     return out;
   }
   /// Of a part's boundary nodes those whose displacement is not put onto an axis, and their slots.
   static std::pair<std::vector<Index32>, std::vector<Index32>> off_axis(Plan const& plan,
                                                                         std::vector<Index32> const& slot_of) {
-    std::vector<char> on_axis(std::size_t(plan.n_slots), 0);
+    std::vector<char> on_axis(plan.n_slots, 0);
     for (kernels::NodeCopy const& c : plan.boundary_projections)
       for (Index q = 0; q < c.n_q; ++q)
         for (Index p = 0; p < c.n_p; ++p)
-          on_axis[std::size_t(c.destination + p * c.destination_stride_p + q * c.destination_stride_q)] = 1;
+          on_axis[c.destination + p * c.destination_stride_p + q * c.destination_stride_q] = 1;
     std::pair<std::vector<Index32>, std::vector<Index32>> out;
     for (std::size_t k = 0; k < slot_of.size(); ++k) {
-      if (on_axis[std::size_t(slot_of[k])] != 0) continue;
+      if (on_axis[slot_of[k]] != 0) continue;
       out.first.push_back(Index32(k));
       out.second.push_back(slot_of[k]);
     }
@@ -223,7 +223,7 @@ struct BlockCommon {
       host.push_back(plan.common[p].motion.frame);
     }
     frames = upload(exec, host, "gridmorph::CommonPart::frames");
-    if (keeps) before = room_for<Vec3>(exec, std::size_t(plan.n_nodes), "gridmorph::CommonPart::before");
+    if (keeps) before = room_for<Vec3>(exec, plan.n_nodes, "gridmorph::CommonPart::before");
     compat::fence(exec, "gridmorph::CommonPart (host tables may go)");
   }
 

@@ -48,14 +48,14 @@ struct BodyTurnTables {
               upload(exec, plan.turns_of_bodies.first, name("first")),
               upload(exec, plan.turns_of_bodies.first_chunk, name("first_chunk")),
               upload(exec, plan.turns_of_bodies.axis, name("axis")),
-              plan.turns_of_bodies.first_chunk[std::size_t(plan.turns_of_bodies.size())],
+              plan.turns_of_bodies.first_chunk[plan.turns_of_bodies.size()],
               upload(exec, plan.turns_of_bodies.lever, name("lever")),
               upload(exec, plan.turns_of_bodies.limits, name("limits"))},
         share(upload(exec, plan.turns_of_bodies.share, name("share"))),
         shift_share(upload(exec, plan.turns_of_bodies.shift_share, name("shift_share"))),
         images(upload(exec, plan.turns_of_bodies.images, name("images"))),
         centre(upload(exec, plan.turns_of_bodies.centre, name("centre"))),
-        sum(room_for<kernels::VectorMoments>(exec, std::size_t(walls.n_wall_chunks), name("sum"))),
+        sum(room_for<kernels::VectorMoments>(exec, walls.n_wall_chunks, name("sum"))),
         sum_rate(room_for<kernels::VectorMoments>(exec, with_rate ? sum.extent(0) : 0, name("sum_rate"))),
         half(room_for<kernels::Quaternion<Vec3>>(exec, centre.extent(0), name("half"))),
         half_rate(room_for<kernels::Quaternion<Vec3>>(exec, with_rate ? centre.extent(0) : 0, name("half_rate"))),
@@ -63,7 +63,7 @@ struct BodyTurnTables {
         shift(room_for<Vec3>(exec, centre.extent(0), name("shift"))),
         shift_rate(room_for<Vec3>(exec, with_rate ? centre.extent(0) : 0, name("shift_rate"))) {
     if (stretches()) {
-      stretch_sum = room_for<kernels::StretchMap>(exec, std::size_t(walls.n_wall_chunks), name("stretch_sum"));
+      stretch_sum = room_for<kernels::StretchMap>(exec, walls.n_wall_chunks, name("stretch_sum"));
       stretch = room_for<kernels::StretchMap>(exec, centre.extent(0), name("stretch"));
       if (!plan.turns_of_bodies.limits.front().even)
         columns = {columns_of_walls(exec, plan), upload(exec, plan.columns.node, name("columns")),

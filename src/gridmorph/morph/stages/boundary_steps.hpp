@@ -30,9 +30,9 @@ kernels::PeriodicTable<typename Exec::memory_space> periodic_table(Exec const& e
     nodes.push_back(image.node);
     rotations.push_back(image.rotation);
   }
-  std::vector<std::uint8_t> is_known(std::size_t(plan.n_nodes), 0), owner_known;
-  for (Index32 const n : plan.known) is_known[std::size_t(n)] = 1;
-  for (Index32 const n : owners) owner_known.push_back(is_known[std::size_t(n)]);
+  std::vector<std::uint8_t> is_known(plan.n_nodes, 0), owner_known;
+  for (Index32 const n : plan.known) is_known[n] = 1;
+  for (Index32 const n : owners) owner_known.push_back(is_known[n]);
   kernels::PeriodicTable<typename Exec::memory_space> const table{upload(exec, owners, name("owner")),
                                                                   upload(exec, owner_known, name("owner_known")),
                                                                   upload(exec, images_of_owner.first, name("first")),

@@ -13,12 +13,11 @@ namespace gridmorph::stages {
 template <class Exec>
 kernels::ColumnsOf<typename Exec::memory_space> columns_of_walls(Exec const& exec, UnstructuredPlan const& plan) {
   std::vector<Index> first(plan.driving.size() + 1, 0);
-  for (Index32 const r : plan.columns.root) ++first[std::size_t(r) + 1];
+  for (Index32 const r : plan.columns.root) ++first[r + 1];
   for (std::size_t r = 0; r + 1 < first.size(); ++r) first[r + 1] += first[r];
   std::vector<Index> next = first;
   std::vector<Index32> column(plan.columns.root.size());
-  for (std::size_t k = 0; k < column.size(); ++k)
-    column[std::size_t(next[std::size_t(plan.columns.root[k])]++)] = Index32(k);
+  for (std::size_t k = 0; k < column.size(); ++k) column[next[plan.columns.root[k]]++] = Index32(k);
   kernels::ColumnsOf<typename Exec::memory_space> const out{upload(exec, first, "gridmorph::columns_of_walls::first"),
                                                             upload(exec, column, "gridmorph::columns_of_walls")};
   compat::fence(exec, "gridmorph::stages::columns_of_walls (host tables may go)");

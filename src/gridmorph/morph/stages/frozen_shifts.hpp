@@ -44,7 +44,7 @@ class FrozenShifts {
       of_slot_ = room_for<Vec3>(exec, map.slide_nodes.size(), name("of_slot"));
       TransposedEntries of_slots;
       for (std::size_t k = 0; k < map.slide_nodes.size(); ++k)
-        of_slots.add(Index32(map.slides[std::size_t(map.slide_nodes[k].slide)].slot), Index32(k), 1);
+        of_slots.add(Index32(map.slides[map.slide_nodes[k].slide].slot), Index32(k), 1);
       slots_ = upload(exec, of_slots, {}, name("slots")).rows;
     }
     compat::fence(exec, "gridmorph::FrozenShifts (host tables may go)");

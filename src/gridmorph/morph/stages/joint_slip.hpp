@@ -37,8 +37,8 @@ class JointNodes {
     std::vector<Index32> node;
     std::vector<std::int32_t> turn;
     for (Index32 const image : of.images.item) {
-      node.push_back(plan.images[std::size_t(image)].node);
-      turn.push_back(plan.images[std::size_t(image)].rotation);
+      node.push_back(plan.images[image].node);
+      turn.push_back(plan.images[image].rotation);
     }
     nodes_ = {joint_slip_table(exec, plan, of.slip, surfaces_, region), upload(exec, of.slip.of, region + "::owner"),
               upload(exec, of.images.first, region + "::images"), upload(exec, node, region + "::node"),

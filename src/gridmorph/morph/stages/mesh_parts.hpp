@@ -241,7 +241,7 @@ class MorphParts {
                                     std::vector<Vec3> const* positions) {
       std::vector<Vec3> own;
       if (positions != nullptr)
-        for (Index32 const n : part.nodes) own.push_back((*positions)[std::size_t(n)]);
+        for (Index32 const n : part.nodes) own.push_back((*positions)[n]);
       ElementStages<Exec> out(exec, *part.plan, velocity, positions == nullptr ? nullptr : &own,
                               part.common ? &*part.common : nullptr, x);
       compat::fence(exec, "gridmorph::MorphParts (positions may go)");

@@ -53,7 +53,7 @@ class FollowCorners {
   /// Rows in single precision miss what is affine by their rounding.
   void find_defects(Exec const& exec, kernels::CommonFrame const& frame, Baseline const& x, Index n_nodes) {
     frame_ = frame;
-    auto const y = room_for<Vec3>(exec, std::size_t(n_nodes), name("coordinates"));
+    auto const y = room_for<Vec3>(exec, n_nodes, name("coordinates"));
     defect_ = room_for<Vec3>(exec, middle_.target.extent(0), name("defect"));
     kernels::launch("gridmorph::middle::coordinates", exec, 0, n_nodes, kernels::CommonCoordinates{frame, x, y.data()});
     kernels::interpolate("gridmorph::middle::means", exec, middle_, y.data(), y.data());

@@ -31,7 +31,7 @@ class NearFit {
         fade_(upload(exec, plan.near_fade, name("fade"))),
         moment_(
             room_for<kernels::MotionMoments>(exec, plan.driving.size() * (1 + plan.fit.images.size()), name("moment"))),
-        group_(room_for<kernels::MotionMoments>(exec, std::size_t(plan.fit.n_groups), name("group"))),
+        group_(room_for<kernels::MotionMoments>(exec, plan.fit.n_groups, name("group"))),
         n_ends_(plan.n_fitted_ends) {
     if (back == nullptr) return;
     auto const& rows = plan.fit.nodes;

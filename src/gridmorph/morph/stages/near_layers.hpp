@@ -56,10 +56,10 @@ class NearLayers {
     Places out{{}, plan.near};
     for (auto const* nodes : {&plan.driving, &plan.columns.node, &plan.near.rows.target})
       out.node.insert(out.node.end(), nodes->begin(), nodes->end());
-    std::vector<Index32> place(std::size_t(plan.n_nodes), -1);
-    for (std::size_t p = 0; p < out.node.size(); ++p) place[std::size_t(out.node[p])] = Index32(p);
+    std::vector<Index32> place(plan.n_nodes, -1);
+    for (std::size_t p = 0; p < out.node.size(); ++p) place[out.node[p]] = Index32(p);
     for (auto* nodes : {&out.layers.rows.item, &out.layers.rows.target})
-      for (Index32& n : *nodes) n = place[std::size_t(n)];
+      for (Index32& n : *nodes) n = place[n];
     return out;
   }
   NearLayers(Exec const& exec, UnstructuredPlan const& plan, Places const& places, bool back)
@@ -75,8 +75,7 @@ class NearLayers {
       layers_back_ = transposed(exec, places.layers, Index(places.node.size()), name("layers_back"));
       columns_of_ = columns_of_walls(exec, plan);
       std::vector<float> kept(places.node.size(), 1);
-      for (std::size_t r = 0; r < plan.near_turn.size(); ++r)
-        kept[std::size_t(places.layers.rows.target[r])] = plan.near_turn[r];
+      for (std::size_t r = 0; r < plan.near_turn.size(); ++r) kept[places.layers.rows.target[r]] = plan.near_turn[r];
       kept_ = upload(exec, kept, name("kept"));
       compat::fence(exec, "gridmorph::NearLayers (host tables may go)");
     }

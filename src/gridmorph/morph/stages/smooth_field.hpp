@@ -12,8 +12,8 @@ class SmoothField {
  public:
   SmoothField(Exec const& exec, InverseDistanceField const& plan, std::string const& label)
       : table_(upload(exec, plan, label)),
-        group_(room_for<Value>(exec, std::size_t(plan.n_groups), label + "::groups")),
-        value_(room_for<Vec3>(exec, std::size_t(plan.lattice.size()), label + "::values")) {}
+        group_(room_for<Value>(exec, plan.n_groups, label + "::groups")),
+        value_(room_for<Vec3>(exec, plan.lattice.size(), label + "::values")) {}
 
   [[nodiscard]] bool empty() const { return table_.empty(); }
   /// given: what the boundary nodes say, in the order of the plan.

@@ -59,7 +59,7 @@ class WriteBlocks {
     auto volume = volume_pass<Move>(plan, x, fields.front());
     for (Out const& field : out) {
       kernels::write_skeleton_nodes<Move>(exec, plan.skeleton_nodes, plan.rotations,
-                                          read(fields[std::size_t(volume.n_fields)].skeleton), field.array(), x);
+                                          read(fields[volume.n_fields].skeleton), field.array(), x);
       volume.out[volume.n_fields++] = field.array();
     }
     kernels::pass_volume(exec, plan.volume_items, volume);
@@ -154,7 +154,7 @@ StageList<Exec> stage_list(Exec const& exec, UnstructuredPlan const& plan, Basel
     if (plan.parts.empty()) {
       field = element_field(exec, plan, f == 1, options.transpose);
     } else {
-      field.u = room_for<Vec3>(exec, std::size_t(plan.n_nodes), "gridmorph::Morpher::u");
+      field.u = room_for<Vec3>(exec, plan.n_nodes, "gridmorph::Morpher::u");
       if (options.transpose && f == 1)
         field.given = room_for<Vec3>(exec, plan.known.size(), "gridmorph::Morpher::given");
     }

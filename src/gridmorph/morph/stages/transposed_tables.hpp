@@ -35,9 +35,8 @@ struct TransposedEntries {
       if (!counts(rows.target[r])) continue;
       Index const from = rows.first[r], to = rows.first[r + 1];
       double first = 1;
-      for (Index k = from + 1; k < to; ++k) first -= double(rows.weight[std::size_t(k)]);
-      for (Index k = from; k < to; ++k)
-        add(rows.item[std::size_t(k)], rows.target[r], k == from ? first : double(rows.weight[std::size_t(k)]));
+      for (Index k = from + 1; k < to; ++k) first -= double(rows.weight[k]);
+      for (Index k = from; k < to; ++k) add(rows.item[k], rows.target[r], k == from ? first : double(rows.weight[k]));
     }
   }
 };
@@ -50,28 +49,27 @@ kernels::TransposedLayers<typename Exec::memory_space> upload(Exec const& exec, 
   std::size_t n_sources = order.size();
   for (Index32 const s : of.source) n_sources = std::max(n_sources, std::size_t(s) + 1);
   std::vector<Index> count(n_sources, 0);
-  for (Index32 const s : of.source) ++count[std::size_t(s)];
+  for (Index32 const s : of.source) ++count[s];
   std::vector<Index32> source;
   for (std::size_t s = 0; s < n_sources; ++s)
     if (count[s] > 0) source.push_back(Index32(s));
   if (!order.empty())
-    std::stable_sort(source.begin(), source.end(),
-                     [&](Index32 a, Index32 b) { return order[std::size_t(a)] > order[std::size_t(b)]; });
+    std::stable_sort(source.begin(), source.end(), [&](Index32 a, Index32 b) { return order[a] > order[b]; });
   std::vector<Index> first, level, next(n_sources, 0);
   Index n = 0;
   for (std::size_t k = 0; k < source.size(); ++k) {
     auto const s = std::size_t(source[k]);
-    if (k == 0 || (!order.empty() && order[s] != order[std::size_t(source[k - 1])])) level.push_back(Index(k));
+    if (k == 0 || (!order.empty() && order[s] != order[source[k - 1]])) level.push_back(Index(k));
     first.push_back(n);
     next[s] = n;
     n += count[s];
   }
   first.push_back(n);
   level.push_back(Index(source.size()));
-  std::vector<Index32> target(std::size_t(n), 0);
-  std::vector<double> weight(std::size_t(n), 0);
+  std::vector<Index32> target(n, 0);
+  std::vector<double> weight(n, 0);
   for (std::size_t k = 0; k < of.source.size(); ++k) {
-    auto const to = std::size_t(next[std::size_t(of.source[k])]++);
+    auto const to = std::size_t(next[of.source[k]]++);
     target[to] = of.target[k];
     weight[to] = of.weight[k];
   }
@@ -94,10 +92,9 @@ kernels::TransposedRows<typename Exec::memory_space> transposed(Exec const& exec
 template <class Exec>
 kernels::TransposedLayers<typename Exec::memory_space> transposed(Exec const& exec, LayerRows const& layers,
                                                                   Index n_values, std::string const& label) {
-  std::vector<int> layer(std::size_t(n_values), 0);
+  std::vector<int> layer(n_values, 0);
   for (std::size_t l = 0; l + 1 < layers.level.size(); ++l)
-    for (Index r = layers.level[l]; r < layers.level[l + 1]; ++r)
-      layer[std::size_t(layers.rows.target[std::size_t(r)])] = int(l) + 1;
+    for (Index r = layers.level[l]; r < layers.level[l + 1]; ++r) layer[layers.rows.target[r]] = int(l) + 1;
   TransposedEntries entries;
   entries.add(layers.rows);
   return upload(exec, entries, layer, label);
@@ -123,7 +120,7 @@ struct CopyPositions {
 /// Positions of the baseline on the host. Fences.
 template <class Exec>
 std::vector<Vec3> host_positions(Exec const& exec, Baseline const& x, Index n) {
-  auto const all = room_for<Vec3>(exec, std::size_t(n), "gridmorph::Morpher::positions");
+  auto const all = room_for<Vec3>(exec, n, "gridmorph::Morpher::positions");
   kernels::launch("gridmorph::Morpher::positions", exec, 0, n, CopyPositions{x, all.data()});
   compat::fence(exec, "gridmorph::Morpher (positions are read on the host)");
   auto const host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), all);
@@ -143,14 +140,14 @@ struct ReadersOfCells {
     begin.assign(std::size_t(cells[0] * cells[1] * cells[2]) + 1, 0);
     std::vector<Index> cell;
     for (Index32 const n : nodes) {
-      kernels::PlaceInCell const at = shape.place(x[std::size_t(n)]);
+      kernels::PlaceInCell const at = shape.place(x[n]);
       cell.push_back(at.cell[0] + cells[0] * (at.cell[1] + cells[1] * at.cell[2]));
       ++begin[std::size_t(cell.back()) + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     node.resize(nodes.size());
     std::vector<Index> next(begin.begin(), begin.end() - 1);
-    for (std::size_t k = 0; k < nodes.size(); ++k) node[std::size_t(next[std::size_t(cell[k])]++)] = nodes[k];
+    for (std::size_t k = 0; k < nodes.size(); ++k) node[next[cell[k]]++] = nodes[k];
   }
 };
 
@@ -162,10 +159,10 @@ kernels::LatticeReaders<typename Exec::memory_space> lattice_readers(Exec const&
                                                                      std::vector<bool>& is_read,
                                                                      std::string const& label) {
   std::vector<Index> first;
-  std::vector<std::vector<Index32>> parts(std::size_t(shape.size()));
+  std::vector<std::vector<Index32>> parts(shape.size());
   Index const n_cells = Index(readers.begin.size()) - 1;
   for (Index c = 0; c < n_cells; ++c)
-    for (Index k = readers.begin[std::size_t(c)]; k < readers.begin[std::size_t(c) + 1]; k += kernels::lattice_chunk) {
+    for (Index k = readers.begin[c]; k < readers.begin[c + 1]; k += kernels::lattice_chunk) {
       Index const at[3] = {c % readers.cells[0], c / readers.cells[0] % readers.cells[1],
                            c / (readers.cells[0] * readers.cells[1])};
       for (int corner = 0; corner < 8; ++corner) {
@@ -176,7 +173,7 @@ kernels::LatticeReaders<typename Exec::memory_space> lattice_readers(Exec const&
           inside = inside && node[a] < shape.nodes[a];
         }
         if (inside)
-          parts[std::size_t(node[0] + shape.nodes[0] * (node[1] + shape.nodes[1] * node[2]))].push_back(
+          parts[node[0] + shape.nodes[0] * (node[1] + shape.nodes[1] * node[2])].push_back(
               Index32(8 * Index(first.size()) + corner));
       }
       first.push_back(k);
@@ -218,14 +215,14 @@ class SmoothFieldBack {
     std::vector<bool> is_read;
     readers_ = lattice_readers(exec, plan.shape, ReadersOfCells(plan.shape, std::move(readers), x), is_read, label);
     TransposedEntries rows;
-    rows.add(plan.lattice, [&](Index32 n) { return bool(is_read[std::size_t(n)]); });
+    rows.add(plan.lattice, [&](Index32 n) { return bool(is_read[n]); });
     lattice_ = upload(exec, rows, {}, label).rows;
     centre_ = upload(exec, plan.centre, label);
     std::vector<Vec3> place;
     for (Index n = 0; n < plan.shape.size(); ++n) place.push_back(plan.shape.position(n));
     place_ = upload(exec, place, label);
-    group_ = room_for<Value>(exec, std::size_t(plan.n_groups), label);
-    value_ = room_for<Vec3>(exec, std::size_t(plan.shape.size()), label);
+    group_ = room_for<Value>(exec, plan.n_groups, label);
+    value_ = room_for<Vec3>(exec, plan.shape.size(), label);
     parts_ = room_for<Vec3>(exec, std::size_t(8 * readers_.n_chunks), label);
   }
 

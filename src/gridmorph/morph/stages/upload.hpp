@@ -49,11 +49,11 @@ kernels::LayerTable<typename Exec::memory_space> upload(Exec const& exec, LayerR
 template <class Exec>
 List<Exec, Index32> upload_sources(Exec const& exec, std::vector<Index32> const& nodes, LayerRows const& layers,
                                    Index n_nodes, std::string const& label) {
-  std::vector<std::uint8_t> read(std::size_t(n_nodes), 0);
-  for (Index32 const n : layers.rows.item) read[std::size_t(n)] = 1;
+  std::vector<std::uint8_t> read(n_nodes, 0);
+  for (Index32 const n : layers.rows.item) read[n] = 1;
   std::vector<Index32> sources;
   for (Index32 const n : nodes)
-    if (read[std::size_t(n)] != 0) sources.push_back(n);
+    if (read[n] != 0) sources.push_back(n);
   auto const out = upload(exec, sources, label);
   compat::fence(exec, "gridmorph::upload_sources (host tables may go)");
   return out;

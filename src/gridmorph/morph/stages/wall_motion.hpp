@@ -38,7 +38,7 @@ class WallMotion {
     turn_gradient_ = room_for<Vec3>(exec, plan.driving.size(), name("turn_gradient"));
     TransposedEntries parts;
     auto const n_around = Index32(plan.one_rings.item.size());
-    for (Index32 k = 0; k < n_around; ++k) parts.add(plan.one_rings.item[std::size_t(k)], k, 1);
+    for (Index32 k = 0; k < n_around; ++k) parts.add(plan.one_rings.item[k], k, 1);
     for (std::size_t r = 0; r < plan.driving.size(); ++r) parts.add(plan.driving[r], n_around + Index32(r), 1);
     turn_parts_ = room_for<Vec3>(exec, std::size_t(n_around) + plan.driving.size(), name("turn_parts"));
     parts_of_node_ = upload(exec, parts, {}, name("parts_of_node")).rows;

@@ -65,7 +65,7 @@ class WallRings {
     if (!surface_.lines) return;
     across_ = boundary.across();
     for (GridFacet const& f : surface_.grids.front().faces)
-      add(f, distance(surface_.points[std::size_t(f[0])], surface_.points[std::size_t(f[1])]));
+      add(f, distance(surface_.points[f[0]], surface_.points[f[1]]));
   }
 
   /// The nodes that features have as well.
@@ -79,7 +79,7 @@ class WallRings {
   template <class Displacement>
   [[nodiscard]] std::map<int, RimFaces> rings(Displacement const& displacement) const {
     std::vector<Vec3> points, u;
-    for (auto const& [at, area] : share_) points.push_back(surface_.points[std::size_t(at.second)]);
+    for (auto const& [at, area] : share_) points.push_back(surface_.points[at.second]);
     u.resize(points.size());
     displacement(points, u);
     std::map<int, RimFaces> out;
@@ -99,7 +99,7 @@ class WallRings {
     auto const corners = std::size_t(std::count_if(facet.begin(), facet.end(), [](int v) { return v >= 0; }));
     std::array<int, 4> touched{-1, -1, -1, -1};
     for (std::size_t c = 0; c < corners; ++c) {
-      int const f = feature_of_[std::size_t(facet[c])];
+      int const f = feature_of_[facet[c]];
       if (f < 0 || std::find(touched.begin(), touched.end(), f) != touched.end()) continue;
       touched[c] = f;
       for (std::size_t k = 0; k < corners; ++k) share_[{f, facet[k]}] += size / double(corners);
@@ -132,7 +132,7 @@ class KeptDirection {
     for (PatchGrid const& grid : surface_.grids) {
       std::vector<Vec3> points;
       for (int const v : grid.vertex)
-        if (feature_of_[std::size_t(v)] == feature) points.push_back(surface_.points[std::size_t(v)]);
+        if (feature_of_[v] == feature) points.push_back(surface_.points[v]);
       if (points.empty()) continue;
       PlaneFit const plane = fit_plane(points);
       if (!plane.determined || plane.deviation > flat * plane.extent) continue;
@@ -190,7 +190,7 @@ void require_one_motion(std::map<int, RimFaces> const& by_rule, RimFaces const& 
   for (auto const& [r, ring] : by_rule) {
     Vec3 const off = ring.misfit(fit);
     if (!(norm(off) > most)) continue;
-    MotionRule const& rule = rules[std::size_t(r)];
+    MotionRule const& rule = rules[r];
     throw MotionError("meets walls of different motion: that of rule " + std::to_string(r + 1) + " (" +
                       std::string(rule_name(rule.rule)) + (rule.where.empty() ? "" : ", " + rule.where) + ") is " +
                       to_text(off, 3) + " off what would carry it, of " + to_text(all.largest(), 3) +
@@ -210,10 +210,9 @@ CarriedFeatures::CarriedFeatures(Boundary const& boundary, ResolvedMotion const&
   std::vector<std::set<int>> rims(count);             // vertices
   for (int const wall : walls) {
     WallRings const on(boundary, wall, [&](Vec3 const& x) { return feature_at(x); });
-    for (Vec3 const& x : on.rim()) rims[std::size_t(feature_at(x))].insert(surface_.numbers.find(x));
+    for (Vec3 const& x : on.rim()) rims[feature_at(x)].insert(surface_.numbers.find(x));
     auto const of_wall = [&](std::span<Vec3 const> x, std::span<Vec3> u) { displacement(wall, x, u); };
-    for (auto const& [f, ring] : on.rings(of_wall))
-      rings[std::size_t(f)][motion.patch[std::size_t(wall)].rule].append(ring);
+    for (auto const& [f, ring] : on.rings(of_wall)) rings[f][motion.patch[wall].rule].append(ring);
   }
   KeptDirection const kept(surface_, feature_of_, rule, motion.axis);
   Problems problems;
@@ -232,7 +231,7 @@ CarriedFeatures::CarriedFeatures(Boundary const& boundary, ResolvedMotion const&
 
 int CarriedFeatures::feature_at(Vec3 const& point) const {
   int const v = surface_.numbers.find(point);
-  return v < 0 ? -1 : feature_of_[std::size_t(v)];
+  return v < 0 ? -1 : feature_of_[v];
 }
 
 CarriedFeatures::Feature CarriedFeatures::made(std::set<int> const& rim, RigidFit const& motion,
@@ -241,7 +240,7 @@ CarriedFeatures::Feature CarriedFeatures::made(std::set<int> const& rim, RigidFi
   out.motion = motion;
   Vec3 middle;
   for (int const v : rim) {
-    out.rim.push_back(surface_.points[std::size_t(v)]);
+    out.rim.push_back(surface_.points[v]);
     middle += (1 / double(rim.size())) * out.rim.back();
   }
   for (Vec3 const& x : out.rim) out.fade = std::max(out.fade, distance(x, middle));
@@ -258,8 +257,7 @@ std::string CarriedFeatures::described(Boundary const& boundary, int feature) co
       ++count;
     }
   for (PatchGrid const& grid : surface_.grids)
-    if (std::any_of(grid.vertex.begin(), grid.vertex.end(),
-                    [&](int v) { return feature_of_[std::size_t(v)] == feature; }))
+    if (std::any_of(grid.vertex.begin(), grid.vertex.end(), [&](int v) { return feature_of_[v] == feature; }))
       return boundary.describe_patch(grid.patch) + " around " + to_text((1.0 / count) * sum, 4);
   return "without patches";
 }
@@ -270,7 +268,7 @@ void CarriedFeatures::displacement(std::span<Vec3 const> points, std::span<Vec3>
     if (f < 0)
       throw MotionError(name_ + ": the point " + to_text(points[n], 9) +
                         " is no node of its patches, and what is not connected has no motion");
-    out[n] = gridmorph::displacement(features_[std::size_t(f)].motion, points[n]);
+    out[n] = gridmorph::displacement(features_[f].motion, points[n]);
   }
 }
 

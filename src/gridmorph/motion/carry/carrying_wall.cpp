@@ -29,10 +29,10 @@ class Reach {
   /// The number of the nearest feature, or -1 where none reaches.
   [[nodiscard]] int feature(std::size_t v) const {
     int const f = nearest_[v];
-    return f >= 0 && (away_[v] == 0 || away_[v] < reach_[std::size_t(f)]) ? f : -1;
+    return f >= 0 && (away_[v] == 0 || away_[v] < reach_[f]) ? f : -1;
   }
   [[nodiscard]] double share(std::size_t v) const {
-    return away_[v] == 0 ? 1 : 1 - smoothstep(away_[v] / reach_[std::size_t(nearest_[v])]);
+    return away_[v] == 0 ? 1 : 1 - smoothstep(away_[v] / reach_[nearest_[v]]);
   }
 
  private:
@@ -46,14 +46,14 @@ class Reach {
         }
     EdgeDistances distances = edge_distances_and_sources(surface_, {}, rim);
     away_ = std::move(distances.distance);
-    for (int const s : distances.source) nearest_.push_back(s < 0 ? -1 : of_rim[std::size_t(s)]);
+    for (int const s : distances.source) nearest_.push_back(s < 0 ? -1 : of_rim[s]);
   }
 
   /// Nodes on a rim are the feature's, whatever else they are.
   void end_at(int v) {
-    if (v < 0 || nearest_[std::size_t(v)] < 0 || away_[std::size_t(v)] == 0) return;
-    double& own = reach_[std::size_t(nearest_[std::size_t(v)])];
-    own = std::min(own, away_[std::size_t(v)]);
+    if (v < 0 || nearest_[v] < 0 || away_[v] == 0) return;
+    double& own = reach_[nearest_[v]];
+    own = std::min(own, away_[v]);
   }
 
   /// Parts features from one another: half way between two of them the wall has its own motion.
@@ -64,7 +64,7 @@ class Reach {
         auto const w = std::size_t(other);
         if (nearest_[v] < 0 || nearest_[w] < 0 || nearest_[v] == nearest_[w]) continue;
         double const half = 0.5 * (away_[v] + away_[w] + distance(surface_.points[v], surface_.points[w]));
-        double& own = reach_[std::size_t(nearest_[v])];
+        double& own = reach_[nearest_[v]];
         own = std::min(own, half);
       }
   }
@@ -96,7 +96,7 @@ CarryingWall::CarryingWall(Boundary const& boundary, std::vector<int> const& pat
     own(grid.patch, points, u);
     for (std::size_t n = 0; n < vertices.size(); ++n) {
       std::size_t const v = vertices[n];
-      Vec3 const carried = displacement(features[std::size_t(reach.feature(v))]->motion, points[n]);
+      Vec3 const carried = displacement(features[reach.feature(v)]->motion, points[n]);
       double const share = reach.share(v);
       displacement_[v] = share == 1 ? carried : u[n] + share * (carried - u[n]);
     }
@@ -105,8 +105,7 @@ CarryingWall::CarryingWall(Boundary const& boundary, std::vector<int> const& pat
 
 void CarryingWall::change(std::span<Vec3 const> points, std::span<Vec3> displacement) const {
   for (std::size_t n = 0; n < points.size(); ++n)
-    if (int const v = surface_.numbers.find(points[n]); v >= 0 && changes_[std::size_t(v)] != 0)
-      displacement[n] = displacement_[std::size_t(v)];
+    if (int const v = surface_.numbers.find(points[n]); v >= 0 && changes_[v] != 0) displacement[n] = displacement_[v];
 }
 
 }  // namespace gridmorph

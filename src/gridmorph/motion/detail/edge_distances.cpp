@@ -35,26 +35,25 @@ EdgeDistances edge_distances_and_sources(PatchSurface const& surface, std::vecto
   auto const& points = surface.points;
   auto const neighbours = surface.neighbours();
   std::vector<std::vector<int>> same(points.size());
-  for (VertexImage const& image : images) same[std::size_t(image.vertex)].push_back(image.image);
+  for (VertexImage const& image : images) same[image.vertex].push_back(image.image);
   EdgeDistances out{std::vector<double>(points.size(), std::numeric_limits<double>::infinity()),
                     std::vector<int>(points.size(), -1)};
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
   auto const reach = [&](int v, double there, int source) {
-    if (there >= out.distance[std::size_t(v)]) return;
-    out.distance[std::size_t(v)] = there;
-    out.source[std::size_t(v)] = source;
+    if (there >= out.distance[v]) return;
+    out.distance[v] = there;
+    out.source[v] = source;
     front.emplace(there, v);
   };
   for (std::size_t s = 0; s < sources.size(); ++s) reach(sources[s], 0, int(s));
   while (!front.empty()) {
     auto const [d, v] = front.top();
     front.pop();
-    if (d > out.distance[std::size_t(v)]) continue;
-    int const source = out.source[std::size_t(v)];
-    for (int const w : neighbours[std::size_t(v)])
-      reach(w, d + distance(points[std::size_t(v)], points[std::size_t(w)]), source);
-    for (int const w : same[std::size_t(v)]) reach(w, d, source);
+    if (d > out.distance[v]) continue;
+    int const source = out.source[v];
+    for (int const w : neighbours[v]) reach(w, d + distance(points[v], points[w]), source);
+    for (int const w : same[v]) reach(w, d, source);
   }
   return out;
 }

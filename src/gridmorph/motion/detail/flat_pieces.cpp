@@ -17,7 +17,7 @@ constexpr double same_plane = 0.866;  // 30 degrees
 
 /// Unit, zero of a collapsed face; of a line across the plane of the mesh and the line.
 Vec3 normal_of(Boundary const& boundary, BoundarySurface const& surface, GridFacet const& face) {
-  auto const x = [&](int corner) { return boundary.coordinates()[surface.nodes[std::size_t(face[corner])]]; };
+  auto const x = [&](int corner) { return boundary.coordinates()[surface.nodes[face[corner]]]; };
   Vec3 const normal = face[2] < 0   ? cross(boundary.across(), x(1) - x(0))
                       : face[3] < 0 ? cross(x(1) - x(0), x(2) - x(0))
                                     : cross(x(2) - x(0), x(3) - x(1));
@@ -34,7 +34,7 @@ std::vector<std::vector<Index>> flat_pieces(Boundary const& boundary, int patch)
   std::vector<std::pair<std::array<int, 2>, int>> sides;
   std::vector<Vec3> normal;
   for (int f = 0; f < int(surface.faces.size()); ++f) {
-    GridFacet const& face = surface.faces[std::size_t(f)];
+    GridFacet const& face = surface.faces[f];
     normal.push_back(normal_of(boundary, surface, face));
     int const corners = n_corners(face);
     for (int c = 0; c < corners; ++c) {
@@ -47,15 +47,14 @@ std::vector<std::vector<Index>> flat_pieces(Boundary const& boundary, int patch)
   for (std::size_t n = 1; n < sides.size(); ++n) {
     if (sides[n].first != sides[n - 1].first) continue;
     int const f = sides[n - 1].second, g = sides[n].second;
-    if (std::abs(dot(normal[std::size_t(f)], normal[std::size_t(g)])) >= same_plane) sets.join(f, g);
+    if (std::abs(dot(normal[f], normal[g])) >= same_plane) sets.join(f, g);
   }
   std::vector<std::vector<Index>> out;
   auto const piece_of = sets.set_numbers();
   for (std::size_t f = 0; f < surface.faces.size(); ++f) {
     auto const piece = std::size_t(piece_of[f]);
     out.resize(std::max(out.size(), piece + 1));
-    for (int c = 0; c < n_corners(surface.faces[f]); ++c)
-      out[piece].push_back(surface.nodes[std::size_t(surface.faces[f][c])]);
+    for (int c = 0; c < n_corners(surface.faces[f]); ++c) out[piece].push_back(surface.nodes[surface.faces[f][c]]);
   }
   for (auto& nodes : out) {
     std::sort(nodes.begin(), nodes.end());

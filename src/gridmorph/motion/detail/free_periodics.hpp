@@ -15,8 +15,7 @@ inline std::vector<std::string> free_by_default(std::vector<AnyConnection> const
                                                 ResolvedMotion const& motion) {
   std::set<std::string> names;
   for (AnyConnection const& c : connections)
-    if (motion.interface[std::size_t(c.number)].by_default)
-      names.insert(c.families.empty() ? c.name : c.families.front());
+    if (motion.interface[c.number].by_default) names.insert(c.families.empty() ? c.name : c.families.front());
   return {names.begin(), names.end()};
 }
 

@@ -47,14 +47,14 @@ std::int32_t RotationNumbers::then(std::int32_t first, std::int32_t next) {
   if (first < 0) return next;
   if (next < 0) return first;
   auto const [at, fresh] = composed_.try_emplace({first, next}, std::int32_t(rotations_.size()));
-  if (fresh) rotations_.push_back(rotations_[std::size_t(next)] * rotations_[std::size_t(first)]);
+  if (fresh) rotations_.push_back(rotations_[next] * rotations_[first]);
   return at->second;
 }
 
 std::int32_t RotationNumbers::back(std::int32_t number) {
   if (number < 0) return number;
   auto const [at, fresh] = inverse_.try_emplace(number, std::int32_t(rotations_.size()));
-  if (fresh) rotations_.push_back(transpose(rotations_[std::size_t(number)]));
+  if (fresh) rotations_.push_back(transpose(rotations_[number]));
   return at->second;
 }
 
@@ -94,7 +94,7 @@ void JointSlipFinder::add(std::vector<ClassMember> const& members, std::size_t k
 }
 
 JointSlipFinder::Held JointSlipFinder::held(Index32 surface, Index32 node, std::int32_t turned) const {
-  auto const view = surfaces_[std::size_t(surface)].view();
+  auto const view = surfaces_[surface].view();
   Vec3 gradient;
   (void)view.excess(x_[node], view.own_offset(x_[node]), {}, gradient);
   Vec3 const own = turned < 0 ? gradient : transpose(rotations_[turned]) * gradient;
@@ -104,7 +104,7 @@ JointSlipFinder::Held JointSlipFinder::held(Index32 surface, Index32 node, std::
 /// A surface of revolution knows no way back for nodes on its axis, but where it lies across it.
 bool JointSlipFinder::has_a_way_back(Index32 surface, Index32 node) const {
   constexpr double on_axis = 1e-12;
-  SlipSurface const& s = surfaces_[std::size_t(surface)];
+  SlipSurface const& s = surfaces_[surface];
   bool const turns = s.kind == SlipKind::revolution || (s.kind == SlipKind::meridional && s.frame.cosine != 0);
   return !turns || norm(cross(x_[node] - s.origin, s.direction)) > on_axis * size_;
 }

@@ -24,9 +24,7 @@ class RotationNumbers {
   [[nodiscard]] std::int32_t back(std::int32_t number);
   /// The least angle of all rotations so far that turn anything; pi where there are none [rad].
   [[nodiscard]] double least_angle() const;
-  [[nodiscard]] Mat3 operator[](std::int32_t number) const {
-    return number < 0 ? Mat3() : rotations_[std::size_t(number)];
-  }
+  [[nodiscard]] Mat3 operator[](std::int32_t number) const { return number < 0 ? Mat3() : rotations_[number]; }
   [[nodiscard]] std::vector<Mat3> const& all() const { return rotations_; }
 
  private:

@@ -55,7 +55,7 @@ PatchSurface in_grids(Boundary const& boundary, std::vector<int> const& patches,
 std::vector<double> span_of(Boundary const& boundary, PatchSurface const& surface, std::vector<int> const& wall_of) {
   auto const images = vertex_images(boundary, surface);
   auto neighbours = surface.neighbours();
-  for (VertexImage const& image : images) neighbours[std::size_t(image.vertex)].push_back(image.image);
+  for (VertexImage const& image : images) neighbours[image.vertex].push_back(image.image);
   std::vector<int> rims;
   std::vector<double> out;
   for (std::size_t v = 0; v < wall_of.size(); ++v) {
@@ -67,8 +67,8 @@ std::vector<double> span_of(Boundary const& boundary, PatchSurface const& surfac
       int const at = front.back();
       front.pop_back();
       rims.push_back(at);
-      for (int const w : neighbours[std::size_t(at)])
-        if (wall_of[std::size_t(w)] >= 0 && std::exchange(seen[std::size_t(w)], 1) == 0) front.push_back(w);
+      for (int const w : neighbours[at])
+        if (wall_of[w] >= 0 && std::exchange(seen[w], 1) == 0) front.push_back(w);
     }
     out = edge_distances(surface, images, rims);
   }
@@ -92,16 +92,13 @@ ExtensionMotion::ExtensionMotion(Boundary const& boundary, std::vector<int> cons
   detail::SpanwiseLines stitched;
   for (PatchGrid const& grid : surface_.grids) {
     int const direction = detail::spanwise_direction(
-        grid.extent, [&](int n) { return points[std::size_t(grid.vertex[std::size_t(n)])]; },
-        [&](int a, int b) {
-          return std::abs(span[std::size_t(grid.vertex[std::size_t(b)])] -
-                          span[std::size_t(grid.vertex[std::size_t(a)])]);
-        });
+        grid.extent, [&](int n) { return points[grid.vertex[n]]; },
+        [&](int a, int b) { return std::abs(span[grid.vertex[b]] - span[grid.vertex[a]]); });
     if (direction < 0) continue;
     for (int l = 0; l < grid.extent[1 - direction]; ++l) {
       auto line = detail::grid_line(grid.extent, direction, l);
-      for (int& n : line) n = grid.vertex[std::size_t(n)];
-      if (span[std::size_t(line.front())] > span[std::size_t(line.back())]) std::reverse(line.begin(), line.end());
+      for (int& n : line) n = grid.vertex[n];
+      if (span[line.front()] > span[line.back()]) std::reverse(line.begin(), line.end());
       stitched.add(std::move(line), l == 0);
     }
   }
@@ -116,17 +113,17 @@ ExtensionMotion::ExtensionMotion(Boundary const& boundary, std::vector<int> cons
     for (int const v : vertices) {
       if (!kept.empty() && kept.back() == v) continue;
       kept.push_back(v);
-      nodes.push_back(points[std::size_t(v)]);
+      nodes.push_back(points[v]);
     }
     if (nodes.size() < 2) continue;
     ArcCurve const line(std::move(nodes));
     std::array<double, 2> way{};
     for (int e = 0; e < 2; ++e) {
-      int const w = wall_of[std::size_t(e == 0 ? kept.front() : kept.back())];
+      int const w = wall_of[e == 0 ? kept.front() : kept.back()];
       if (w < 0) continue;
       ++ends;
       // Nodes of zones of single precision are a little off one another.
-      if (walls[std::size_t(w)]->moves()) way[std::size_t(e)] = way_to(*walls[std::size_t(w)], line, e == 1, name_);
+      if (walls[w]->moves()) way[e] = way_to(*walls[w], line, e == 1, name_);
     }
     double const longer = way[1] - way[0];
     longest = std::max(longest, longer / line.length());
@@ -153,7 +150,7 @@ void ExtensionMotion::displacement(std::span<Vec3 const> at, std::span<Vec3> out
       throw MotionError(name_ + ": the point " + to_text(at[n], 9) +
                         " is no node of its patches; only their lines "
                         "along the span say where it goes");
-    out[n] = displacement_[std::size_t(v)];
+    out[n] = displacement_[v];
   }
 }
 

@@ -26,7 +26,7 @@ MovedWall::MovedWall(Boundary const& boundary, std::vector<int> patches, Displac
       points.push_back(copy(surface_.points[v] + displacement_[v]));
     auto const take = [&](int a, int b, int c) {  // planes need an area
       std::array<int, 3> const t{first + a, first + b, first + c};
-      Vec3 const &p = points[std::size_t(t[0])], &q = points[std::size_t(t[1])], &r = points[std::size_t(t[2])];
+      Vec3 const &p = points[t[0]], &q = points[t[1]], &r = points[t[2]];
       if (norm(cross(q - p, r - p)) > 0) triangles.push_back(t);
     };
     for (GridFacet const& f : facets) {
@@ -48,9 +48,9 @@ bool MovedWall::moves() const {
 }
 
 Vec3 MovedWall::displaced(int v, Vec3 const& shift) const {
-  Vec3 const& own = displacement_[std::size_t(v)];
+  Vec3 const& own = displacement_[v];
   if (shift == Vec3{}) return own;
-  Vec3 const& p = surface_.points[std::size_t(v)];
+  Vec3 const& p = surface_.points[v];
   if (!anywhere_) {
     // Onto the plane of the nearest facet: what was inside of a blade has no facets.
     Vec3 const x = p + own + shift;
@@ -68,8 +68,8 @@ Vec3 MovedWall::at(Vec3 const& point) const {
 }
 
 Vec3 MovedWall::shift_to(int v, Vec3 const& u, std::string const& name) const {
-  Vec3 const& p = surface_.points[std::size_t(v)];
-  Vec3 shift = u - displacement_[std::size_t(v)];
+  Vec3 const& p = surface_.points[v];
+  Vec3 shift = u - displacement_[v];
   if (!anywhere_ || shift == Vec3{}) return shift;
   for (int step = 0; step < 100; ++step) {
     Vec3 const next = u - at(p + shift);

@@ -36,14 +36,13 @@ void make_periodic(std::vector<VertexImage> const& images, std::vector<Vec3>& sh
   std::vector<Vec3> mean = shift;
   std::vector<int> n(shift.size(), 1);
   for (VertexImage const& image : images) {
-    mean[std::size_t(image.vertex)] += transpose(image.rotation) * shift[std::size_t(image.image)];
-    ++n[std::size_t(image.vertex)];
+    mean[image.vertex] += transpose(image.rotation) * shift[image.image];
+    ++n[image.vertex];
   }
   for (std::size_t v = 0; v < shift.size(); ++v)
     if (n[v] > 1) shift[v] = (1.0 / n[v]) * mean[v];
   for (VertexImage const& image : images)  // ascending
-    if (image.image < image.vertex)
-      shift[std::size_t(image.vertex)] = transpose(image.rotation) * shift[std::size_t(image.image)];
+    if (image.image < image.vertex) shift[image.vertex] = transpose(image.rotation) * shift[image.image];
 }
 
 }  // namespace
@@ -56,10 +55,10 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   std::vector<Vec3> rim_displacement;
   std::vector<char> of_blade(boundary.patches().size(), 0), is_rim(points.size(), 0);
   for (ExtensionMotion const* blade : blades) {
-    for (PatchGrid const& grid : blade->surface().grids) of_blade[std::size_t(grid.patch)] = 1;
+    for (PatchGrid const& grid : blade->surface().grids) of_blade[grid.patch] = 1;
     for (std::size_t b = 0; b < blade->surface().points.size(); ++b) {
       int const v = surface_->numbers.find(blade->surface().points[b]);
-      if (v < 0 || std::exchange(is_rim[std::size_t(v)], 1) != 0) continue;
+      if (v < 0 || std::exchange(is_rim[v], 1) != 0) continue;
       rim.push_back(v);
       rim_displacement.push_back(blade->displacement()[b]);
     }
@@ -68,7 +67,7 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   bool any = false;
   auto const transforms = boundary.periodic_transforms(wall.patches());
   for (std::size_t k = 0; k < rim.size(); ++k) {
-    Vec3 const& p = points[std::size_t(rim[k])];
+    Vec3 const& p = points[rim[k]];
     Vec3 const e = wall.shift_to(rim[k], rim_displacement[k], name);
     any = any || e != Vec3{};
     pulls.push_back({p, e});
@@ -79,13 +78,13 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
 
   auto const images = vertex_images(boundary, *surface_);
   auto const away = edge_distances(*surface_, images, rim);
-  for (int const p : wall.patches()) of_blade[std::size_t(p)] = 1;
+  for (int const p : wall.patches()) of_blade[p] = 1;
   double reach = std::numeric_limits<double>::infinity(), farthest = 0;
   for (std::size_t q = 0; q < of_blade.size(); ++q) {
     if (of_blade[q] != 0) continue;
     for (Index const n : boundary.surface(int(q)).nodes)
-      if (int const v = surface_->numbers.find(boundary.coordinates()[n]); v >= 0 && away[std::size_t(v)] > 0)
-        reach = std::min(reach, away[std::size_t(v)]);
+      if (int const v = surface_->numbers.find(boundary.coordinates()[n]); v >= 0 && away[v] > 0)
+        reach = std::min(reach, away[v]);
   }
   for (double const d : away)
     if (std::isfinite(d)) farthest = std::max(farthest, d);
@@ -98,7 +97,7 @@ WallShift::WallShift(Boundary const& boundary, MovedWall const& wall, std::span<
   }
   make_periodic(images, shift);
   for (std::size_t v = 0; v < points.size(); ++v) displacement_[v] = wall.displaced(int(v), shift[v]);
-  for (std::size_t k = 0; k < rim.size(); ++k) displacement_[std::size_t(rim[k])] = rim_displacement[k];
+  for (std::size_t k = 0; k < rim.size(); ++k) displacement_[rim[k]] = rim_displacement[k];
 }
 
 void WallShift::displacement(std::span<Vec3 const> at, std::span<Vec3> out) const {
@@ -107,7 +106,7 @@ void WallShift::displacement(std::span<Vec3 const> at, std::span<Vec3> out) cons
     if (v < 0)
       throw MotionError(name_ + ": the point " + to_text(at[n], 9) +
                         " is no node of its patches; around blades that are extended there is no other place");
-    out[n] = displacement_[std::size_t(v)];
+    out[n] = displacement_[v];
   }
 }
 

@@ -25,11 +25,11 @@ void BSplineBasis::fill(double s, int last, int degree, std::array<double, FfdRu
     double saved = 0;
     for (int r = 0; r < d; ++r) {
       double const right = knot(last + r + 1) - s, left = s - knot(last + 1 - d + r);
-      double const term = out[std::size_t(r)] / (right + left);
-      out[std::size_t(r)] = saved + right * term;
+      double const term = out[r] / (right + left);
+      out[r] = saved + right * term;
       saved = left * term;
     }
-    out[std::size_t(d)] = saved;
+    out[d] = saved;
   }
 }
 
@@ -53,9 +53,9 @@ BSplineBasis::Values BSplineBasis::with_slopes(double s) const {
   for (int n = 0; n <= degree_; ++n) {
     int const i = out.first + n;
     double slope = 0;
-    if (n > 0) slope += lower[std::size_t(n - 1)] / (knot(i + degree_) - knot(i));
-    if (n < degree_) slope -= lower[std::size_t(n)] / (knot(i + degree_ + 1) - knot(i + 1));
-    out.slope[std::size_t(n)] = degree_ * slope;
+    if (n > 0) slope += lower[n - 1] / (knot(i + degree_) - knot(i));
+    if (n < degree_) slope -= lower[n] / (knot(i + degree_ + 1) - knot(i + 1));
+    out.slope[n] = degree_ * slope;
   }
   return out;
 }

@@ -114,11 +114,11 @@ class FfdLattice {
     auto const a = basis_[0].values(place.x), b = basis_[1].values(place.y), c = basis_[2].values(place.z);
     for (int k = 0; k <= basis_[2].degree(); ++k)
       for (int j = 0; j <= basis_[1].degree(); ++j) {
-        double const plane = b.value[std::size_t(j)] * c.value[std::size_t(k)];
+        double const plane = b.value[j] * c.value[k];
         std::size_t const row = std::size_t(a.first) + std::size_t(basis_[0].count()) *
                                                            (std::size_t(b.first + j) +
                                                             std::size_t(basis_[1].count()) * std::size_t(c.first + k));
-        for (int i = 0; i <= basis_[0].degree(); ++i) visit(row + std::size_t(i), a.value[std::size_t(i)] * plane);
+        for (int i = 0; i <= basis_[0].degree(); ++i) visit(row + std::size_t(i), a.value[i] * plane);
       }
   }
 

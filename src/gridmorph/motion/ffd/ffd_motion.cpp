@@ -32,7 +32,7 @@ void for_each_side(BoundarySurface const& surface, Visit visit) {
   }
   for (GridFacet const& facet : surface.faces) {
     auto const corners = std::count_if(facet.begin(), facet.end(), [](int c) { return c >= 0; });
-    for (int c = 0; c < corners; ++c) visit(facet[std::size_t(c)], facet[std::size_t((c + 1) % corners)]);
+    for (int c = 0; c < corners; ++c) visit(facet[c], facet[(c + 1) % corners]);
   }
 }
 
@@ -73,11 +73,11 @@ std::array<bool, 6> cut_faces(Boundary const& boundary, std::vector<int> const& 
   std::array<bool, 6> cut{};
   for (int const p : patches) {
     BoundarySurface const& surface = boundary.surface(p);
-    auto const point = [&](int n) { return boundary.coordinates()[surface.nodes[std::size_t(n)]]; };
+    auto const point = [&](int n) { return boundary.coordinates()[surface.nodes[n]]; };
     std::vector<std::optional<Vec3>> places;
     for (std::size_t n = 0; n < surface.nodes.size(); ++n) places.push_back(lattice.place(point(int(n))));
     for_each_side(surface, [&](int a, int b) {
-      auto const &one = places[std::size_t(a)], &other = places[std::size_t(b)];
+      auto const &one = places[a], &other = places[b];
       if (one.has_value() == other.has_value()) return;
       cut[one ? exit_of(lattice, point(a), *one, point(b)) : exit_of(lattice, point(b), *other, point(a))] = true;
     });
@@ -237,7 +237,7 @@ void FfdMotion::check_held(std::string const& name) const {
 
 std::optional<Vec3> FfdMotion::place(Vec3 const& point) const {
   int const n = ground_->lattice.is_box() ? -1 : ground_->numbers.find(point);
-  return n < 0 ? ground_->lattice.place(point) : ground_->places[std::size_t(n)];
+  return n < 0 ? ground_->lattice.place(point) : ground_->places[n];
 }
 
 void FfdMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> out) const {

@@ -142,10 +142,10 @@ LatticeInverse::End LatticeInverse::descend(Vec3 const& point, Vec3 place) const
     std::array<bool, 3> free{};
     at_side = false;
     for (int a = 0; a < 3; ++a) {
-      double const downhill = dot(here.by[std::size_t(a)], r), s = along_axis(place, a);
+      double const downhill = dot(here.by[a], r), s = along_axis(place, a);
       // At a side of the lattice a place moves along it, unless downhill leads back inside.
-      free[std::size_t(a)] = !((s <= 0 && downhill < 0) || (s >= 1 && downhill > 0));
-      at_side = at_side || !free[std::size_t(a)];
+      free[a] = !((s <= 0 && downhill < 0) || (s >= 1 && downhill > 0));
+      at_side = at_side || !free[a];
     }
     Vec3 const whole = closest_step(here.by, free, r);
     double const before = norm(r);

@@ -49,10 +49,8 @@ class FoldSearch {
   }
 
  private:
-  [[nodiscard]] Vec3 edge(int a, int b) const {
-    return surface_.points[std::size_t(b)] - surface_.points[std::size_t(a)];
-  }
-  [[nodiscard]] Vec3 change(int a, int b) const { return u_[std::size_t(b)] - u_[std::size_t(a)]; }
+  [[nodiscard]] Vec3 edge(int a, int b) const { return surface_.points[b] - surface_.points[a]; }
+  [[nodiscard]] Vec3 change(int a, int b) const { return u_[b] - u_[a]; }
 
   void visit(GridFacet const& facet, int n) {
     Vec3 normal;
@@ -187,7 +185,7 @@ void InflateMotion::displacement(std::span<Vec3 const> points, std::span<Vec3> o
     if (v < 0)
       throw MotionError(name_ + ": the point " + to_text(points[n], 9) +
                         " is no node of its patches; they alone have normals and a height");
-    out[n] = displacement_[std::size_t(v)];
+    out[n] = displacement_[v];
   }
 }
 

@@ -71,7 +71,7 @@ SurfaceOffset::SurfaceOffset(Boundary const& boundary, PatchSurface const& surfa
   direction_.resize(points_.size());
   for (std::size_t v = 0; v < points_.size(); ++v) {
     std::vector<Vec3> kept;
-    for (int const s : rims_[v]) kept.push_back(slip_normal(*touched_[std::size_t(s)], points_[v]));
+    for (int const s : rims_[v]) kept.push_back(slip_normal(*touched_[s], points_[v]));
     auto const parts = normals_.parts(int(v));
     Vec3 const uncut = uncut_direction(parts, kept);
     direction_[v] = cut(uncut);
@@ -89,7 +89,7 @@ void SurfaceOffset::find_rims(Boundary const& boundary, PatchSurface const& surf
   rims_.resize(points_.size());
   std::map<int, int> number;  // of slip surfaces, in touched_
   std::vector<char> own(boundary.patches().size(), 0);
-  for (PatchGrid const& grid : surface.grids) own[std::size_t(grid.patch)] = 1;
+  for (PatchGrid const& grid : surface.grids) own[grid.patch] = 1;
   for (std::size_t q = 0; q < own.size(); ++q) {
     int const s = slip.of_patch[q];
     if (s < 0 || own[q] != 0) continue;
@@ -97,8 +97,8 @@ void SurfaceOffset::find_rims(Boundary const& boundary, PatchSurface const& surf
       int const v = surface.numbers.find(boundary.coordinates()[n]);
       if (v < 0) continue;
       auto const [at, fresh] = number.try_emplace(s, int(touched_.size()));
-      if (fresh) touched_.push_back(&slip.surfaces[std::size_t(s)]);
-      auto& rims = rims_[std::size_t(v)];
+      if (fresh) touched_.push_back(&slip.surfaces[s]);
+      auto& rims = rims_[v];
       if (std::find(rims.begin(), rims.end(), at->second) == rims.end()) rims.push_back(at->second);
     }
   }
@@ -139,17 +139,17 @@ void SurfaceOffset::fade(PatchSurface const& surface, std::vector<VertexImage> c
 
 Vec3 SurfaceOffset::displacement(int v, double height) const {
   if (height == 0) return {};
-  Vec3 const& p = points_[std::size_t(v)];
-  Vec3 u = height * direction_[std::size_t(v)];
-  auto const& rims = rims_[std::size_t(v)];
+  Vec3 const& p = points_[v];
+  Vec3 u = height * direction_[v];
+  auto const& rims = rims_[v];
   if (!rims.empty()) {
     // On one surface the first pass is exact; on the edge of two curved ones a few more come to it.
     for (int pass = 0; pass < (rims.size() == 1 ? 1 : 4); ++pass)
-      for (int const s : rims) u += slip_correction(*touched_[std::size_t(s)], p, u);
+      for (int const s : rims) u += slip_correction(*touched_[s], p, u);
     return u;
   }
   Vec3 const straight = u;
-  for (Slide const& slide : slides_[std::size_t(v)]) {
+  for (Slide const& slide : slides_[v]) {
     Vec3 const along = height * slide.direction;
     // Off a surface of facets a foot need not be below the point, and the way to it is none that vanishes with the
     // height.

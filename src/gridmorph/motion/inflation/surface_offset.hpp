@@ -26,7 +26,7 @@ class VertexNormals {
 
   /// The unit normals of the parts of a vertex; none where all faces are without area or those of a part cancel.
   [[nodiscard]] std::span<Vec3 const> parts(int v) const {
-    return {parts_.data() + first_[std::size_t(v)], parts_.data() + first_[std::size_t(v) + 1]};
+    return {parts_.data() + first_[v], parts_.data() + first_[v + 1]};
   }
 
  private:

@@ -24,10 +24,9 @@ using Corners = std::vector<std::vector<Corner>>;  ///< per vertex
 
 /// Unit normal of a facet; zero without area.
 Vec3 facet_normal(std::vector<Vec3> const& points, GridFacet const& facet, int corners) {
-  Vec3 const origin = points[std::size_t(facet[0])];
+  Vec3 const origin = points[facet[0]];
   Vec3 sum;
-  for (int c = 1; c + 1 < corners; ++c)
-    sum += cross(points[std::size_t(facet[c])] - origin, points[std::size_t(facet[c + 1])] - origin);
+  for (int c = 1; c + 1 < corners; ++c) sum += cross(points[facet[c]] - origin, points[facet[c + 1]] - origin);
   double const length = norm(sum);
   return length > 0 ? (1 / length) * sum : Vec3{};
 }
@@ -36,9 +35,9 @@ Corners corners_of_lines(PatchSurface const& surface, Vec3 const& across) {
   Corners out(surface.points.size());
   for (PatchGrid const& grid : surface.grids)
     for (GridFacet const& face : grid.faces) {
-      Vec3 const normal = cross(across, surface.points[std::size_t(face[1])] - surface.points[std::size_t(face[0])]);
+      Vec3 const normal = cross(across, surface.points[face[1]] - surface.points[face[0]]);
       if (!(norm(normal) > 0)) continue;
-      for (int c = 0; c < 2; ++c) out[std::size_t(face[c])].push_back({(1 / norm(normal)) * normal, std::numbers::pi});
+      for (int c = 0; c < 2; ++c) out[face[c]].push_back({(1 / norm(normal)) * normal, std::numbers::pi});
     }
   return out;
 }
@@ -52,8 +51,8 @@ Corners corners_of_facets(PatchSurface const& surface) {
     if (whole == Vec3{}) continue;
     for (int c = 0; c < n; ++c) {
       auto const v = std::size_t(facet[c]);
-      Vec3 const next = points[std::size_t(facet[(c + 1) % n])] - points[v];
-      Vec3 const before = points[std::size_t(facet[(c + n - 1) % n])] - points[v];
+      Vec3 const next = points[facet[(c + 1) % n]] - points[v];
+      Vec3 const before = points[facet[(c + n - 1) % n]] - points[v];
       Vec3 const own = cross(next, before);
       double const angle = std::atan2(norm(own), dot(next, before));
       // A corner of 180 degrees has no normal, and that of a re-entrant one points the other way.
@@ -72,7 +71,7 @@ void join_images(std::vector<VertexImage> const& images, Corners& corners) {
   for (auto const& [v, own] : of) {
     std::map<int, Mat3> reached{{v, Mat3{}}};  // rotation from v
     std::vector<int> front{v};
-    std::vector<Corner> all = corners[std::size_t(v)];
+    std::vector<Corner> all = corners[v];
     while (!front.empty()) {
       int const at = front.back();
       front.pop_back();
@@ -80,13 +79,13 @@ void join_images(std::vector<VertexImage> const& images, Corners& corners) {
         auto const [to, fresh] = reached.try_emplace(image->image, image->rotation * reached.at(at));
         if (!fresh) continue;
         Mat3 const back = transpose(to->second);
-        for (auto const& [normal, angle] : corners[std::size_t(image->image)]) all.push_back({back * normal, angle});
+        for (auto const& [normal, angle] : corners[image->image]) all.push_back({back * normal, angle});
         front.push_back(image->image);
       }
     }
     joined.emplace_back(v, std::move(all));
   }
-  for (auto& [v, all] : joined) corners[std::size_t(v)] = std::move(all);
+  for (auto& [v, all] : joined) corners[v] = std::move(all);
 }
 
 /// Means of what hangs together by steps of less than the crease angle.
@@ -132,15 +131,14 @@ class BetweenCorners {
   [[nodiscard]] std::vector<Vec3> at(Vec3 const& p, std::vector<std::vector<Vec3>> const& of) const {
     TargetTree::Hit const hit = tree_.closest(p);
     if (hit.triangle < 0) return {};
-    auto const& corner = tree_.triangles()[std::size_t(hit.triangle)];
+    auto const& corner = tree_.triangles()[hit.triangle];
     auto const& x = tree_.points();
-    std::array<double, 3> const weight =
-        barycentric(hit.point, x[std::size_t(corner[0])], x[std::size_t(corner[1])], x[std::size_t(corner[2])]);
+    std::array<double, 3> const weight = barycentric(hit.point, x[corner[0]], x[corner[1]], x[corner[2]]);
     std::vector<Vec3> out;
     bool first = true;
     for (std::size_t c = 0; c < 3; ++c) {
       if (weight[c] < 0.2) continue;  // the middle of a side has none of the third corner
-      auto const& theirs = of[std::size_t(corner[c])];
+      auto const& theirs = of[corner[c]];
       if (std::exchange(first, false)) {
         out = theirs;
         continue;

@@ -96,7 +96,7 @@ Values mean_at_nodes(CellCorners const& cells, Values const& of_cells) {
   cells.each([&](Index c, std::span<Index const> corners) {
     for (Index const corner : corners) {
       auto const one = std::size_t(cells.one(corner));
-      sum[one] += of_cells[std::size_t(c)];
+      sum[one] += of_cells[c];
       ++count[one];
     }
   });
@@ -141,8 +141,7 @@ void CellCorners::each(std::function<void(Index, std::span<Index const>)> const&
     for (int k = 0; k + 1 < zone.extent[2]; ++k)
       for (int j = 0; j + 1 < zone.extent[1]; ++j)
         for (int i = 0; i + 1 < zone.extent[0]; ++i) {
-          for (int n = 0; n < 8; ++n)
-            corners[std::size_t(n)] = zone.node({i + (n & 1), j + (n >> 1 & 1), k + (n >> 2)});
+          for (int n = 0; n < 8; ++n) corners[n] = zone.node({i + (n & 1), j + (n >> 1 & 1), k + (n >> 2)});
           look(c++, corners);
         }
 }

@@ -36,7 +36,7 @@ class SensorOfCells {
     double const share = 1.0 / double(corners.size());
     double mean = 0, low = std::numeric_limits<double>::infinity(), high = -low;
     for (Index const n : corners) {
-      double const q = flow_.variable[std::size_t(n)];
+      double const q = flow_.variable[n];
       mean += share * q;
       low = std::min(low, q);
       high = std::max(high, q);
@@ -50,7 +50,7 @@ class SensorOfCells {
     value_.clear();
     for (Index const n : corners) {
       offset_.push_back(mesh_.coordinates[n] - out.middle);
-      value_.push_back(flow_.variable[std::size_t(n)] - mean);
+      value_.push_back(flow_.variable[n] - mean);
     }
     constexpr double flat = 1e-14;  // of squares: cells 1e7 times as long as they are thick
     out.gradient = fitted_gradient(offset_, value_, flat);
@@ -109,12 +109,12 @@ class ShockFinder {
   void find() {
     FlowAtNodes const flow = flow_at_nodes(cells_, solution_, search_);
     SensorOfCells sensor(mesh_, flow, search_);
-    out_.cells.assign(std::size_t(cells_.size()), 0);
+    out_.cells.assign(cells_.size(), 0);
     reading_.clear();
     Vec3 where;
     double steepest = 0;
     cells_.each([&](Index c, std::span<Index const> corners) {
-      if (looked_at_[std::size_t(c)] == 0) return;
+      if (looked_at_[c] == 0) return;
       ++n_looked_at_;
       SensorReading const reading = sensor.read(corners);
       steepest = std::max(steepest, reading.rise);
@@ -123,7 +123,7 @@ class ShockFinder {
         where = reading.middle;
       }
       if (!(reading.value >= search_.least())) return;
-      out_.cells[std::size_t(c)] = 1;
+      out_.cells[c] = 1;
       reading_.emplace_back(c, reading);
     });
     if (reading_.empty()) none(where, steepest);
@@ -145,13 +145,13 @@ class ShockFinder {
 
   void drop_small_groups() {
     DisjointSets<Index> groups(std::size_t(cells_.n_nodes()));
-    std::vector<Index> node(std::size_t(cells_.size()), -1);
+    std::vector<Index> node(cells_.size(), -1);
     each_found([&](Index c, std::span<Index const> corners) {
-      node[std::size_t(c)] = place(corners.front());
+      node[c] = place(corners.front());
       for (Index const n : corners) groups.join(place(corners.front()), place(n));
     });
     std::map<Index, Index> size;
-    for (auto const& [c, reading] : reading_) ++size[groups.root(node[std::size_t(c)])];
+    for (auto const& [c, reading] : reading_) ++size[groups.root(node[c])];
     Index most = 0;
     for (auto const& [root, n] : size) {
       most = std::max(most, n);
@@ -167,8 +167,8 @@ class ShockFinder {
                         " drops them all; smallest = " + std::to_string(most) +
                         " would keep the largest, a lower threshold makes them larger (" + solution_.source + ")");
     std::erase_if(reading_, [&](auto const& found) {
-      bool const small = size[groups.root(node[std::size_t(found.first)])] < search_.smallest;
-      if (small) out_.cells[std::size_t(found.first)] = 0;
+      bool const small = size[groups.root(node[found.first])] < search_.smallest;
+      if (small) out_.cells[found.first] = 0;
       return small;
     });
     found_ = Index(reading_.size());
@@ -176,12 +176,12 @@ class ShockFinder {
 
   /// The smallest number among a node, those at its place and their periodic copies: cells that share one are
   /// neighbours.
-  [[nodiscard]] Index place(Index node) const { return place_[std::size_t(node)]; }
+  [[nodiscard]] Index place(Index node) const { return place_[node]; }
 
   template <class Look>
   void each_found(Look const& look) const {
     cells_.each([&](Index c, std::span<Index const> corners) {
-      if (out_.cells[std::size_t(c)] != 0) look(c, corners);
+      if (out_.cells[c] != 0) look(c, corners);
     });
   }
 
@@ -214,13 +214,13 @@ class ShockFinder {
   }
 
   void grow() {
-    std::vector<std::uint8_t> touched(std::size_t(cells_.n_nodes()), 0);
+    std::vector<std::uint8_t> touched(cells_.n_nodes(), 0);
     each_found([&](Index, std::span<Index const> corners) {
-      for (Index const n : corners) touched[std::size_t(place(n))] = 1;
+      for (Index const n : corners) touched[place(n)] = 1;
     });
     cells_.each([&](Index c, std::span<Index const> corners) {
       for (Index const n : corners)
-        if (touched[std::size_t(place(n))] != 0) out_.cells[std::size_t(c)] = 1;
+        if (touched[place(n)] != 0) out_.cells[c] = 1;
     });
   }
 

@@ -26,7 +26,7 @@ class CellCorners {
   /// Calls look(cell, corner nodes) for every cell in order.
   void each(std::function<void(Index, std::span<Index const>)> const& look) const;
   /// The smallest number among the nodes at one place, across interfaces and connections that are not periodic.
-  [[nodiscard]] Index one(Index node) const { return one_[std::size_t(node)]; }
+  [[nodiscard]] Index one(Index node) const { return one_[node]; }
   /// For each node the one that stands for its place, across periodic sides too.
   [[nodiscard]] std::vector<Index> one_across_periodic_sides() const;
   [[nodiscard]] Index n_nodes() const { return Index(one_.size()); }

@@ -37,10 +37,10 @@ ShockShift::Sheet::Mean ShockShift::Sheet::mean(Vec3 const& at, double radius) c
   boxes.for_each_nearer(
       at,
       [&](int n) {
-        double const w = weight[std::size_t(n)] * near_share(place[std::size_t(n)], at, radius);
+        double const w = weight[n] * near_share(place[n], at, radius);
         out.weight += w;
-        out.value += w * value[std::size_t(n)];
-        out.place += w * (place[std::size_t(n)] - at);
+        out.value += w * value[n];
+        out.place += w * (place[n] - at);
       },
       [&] { return radius * radius; });
   if (!(out.weight > 0)) return out;
@@ -55,10 +55,10 @@ double ShockShift::Sheet::linear(Vec3 const& at, double radius, Mean const& mean
   boxes.for_each_nearer(
       at,
       [&](int n) {
-        double const w = std::sqrt(weight[std::size_t(n)] * near_share(place[std::size_t(n)], at, radius));
+        double const w = std::sqrt(weight[n] * near_share(place[n], at, radius));
         if (w == 0) return;
-        offset.push_back(w * (place[std::size_t(n)] - mean.place));
-        rise.push_back(w * (value[std::size_t(n)] - mean.value));
+        offset.push_back(w * (place[n] - mean.place));
+        rise.push_back(w * (value[n] - mean.value));
       },
       [&] { return radius * radius; });
   constexpr double narrow = 1e-2;  // of squares: a strip ten times as long as wide says nothing about its width
@@ -71,7 +71,7 @@ std::size_t ShockShift::Sheet::nearest(Vec3 const& at) const {
   boxes.for_each_nearer(
       at,
       [&](int n) {
-        Vec3 const d = place[std::size_t(n)] - at;
+        Vec3 const d = place[n] - at;
         double const d2 = dot(d, d);
         if (d2 > best2 || (d2 == best2 && std::size_t(n) > best)) return;
         best = std::size_t(n);

@@ -95,19 +95,18 @@ class EdgeMapper {
                                      [&](int a, int b) { return of_target.contains(network_.edge_between(a, b)); });
     place_loop_.assign(network_.points().size(), -1);
     for (std::size_t k = 0; k < there.size(); ++k)
-      for (int const q : there[k].vertices) place_loop_[std::size_t(q)] = int(k);
+      for (int const q : there[k].vertices) place_loop_[q] = int(k);
     auto const partner = pair_loops(own, there, 0.5 * size_);
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (partner[k] < 0) continue;
-      FeatureLoop const& to = there[std::size_t(partner[k])];
+      FeatureLoop const& to = there[partner[k]];
       Vec3 const shift = to.middle - own[k].middle;
       bool const apart = norm(shift) > own[k].length / (4 * std::numbers::pi);
-      for (int const v : own[k].vertices)
-        loop_[std::size_t(v)] = {partner[k], to.vertices.front(), apart ? shift : Vec3{}};
+      for (int const v : own[k].vertices) loop_[v] = {partner[k], to.vertices.front(), apart ? shift : Vec3{}};
     }
   }
 
-  [[nodiscard]] Vec3 guess_of(int vertex) const { return guess_(points_[vertex]) + loop_[std::size_t(vertex)].shift; }
+  [[nodiscard]] Vec3 guess_of(int vertex) const { return guess_(points_[vertex]) + loop_[vertex].shift; }
 
   [[nodiscard]] int free_end(int vertex) const { return neighbours_[vertex].size() == 1 ? 1 : 0; }
   void count(bool mapped) { ++(mapped ? out_.mapped : out_.unmapped); }
@@ -161,9 +160,9 @@ class EdgeMapper {
       std::size_t const degree = neighbours_[v].size();
       if (degree < 2 || (degree == 2 && corner_[v] == 0)) continue;
       Vec3 const g = guess_of(v);
-      int const loop = loop_[std::size_t(v)].partner;
+      int const loop = loop_[v].partner;
       for (int const q : places) {
-        if (loop >= 0 && place_loop_[std::size_t(q)] != loop) continue;
+        if (loop >= 0 && place_loop_[q] != loop) continue;
         // Where as many edges meet in both, corners may be far apart; sharp turns of a line are the same only near by.
         bool const alike = network_.neighbours()[q].size() == degree;
         double const limit = alike && degree != 2 ? 0.5 * size_ : reach_[v];
@@ -199,9 +198,7 @@ class EdgeMapper {
       for (std::size_t i = 0; i < paired.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
           int const v = paired[i], w = paired[j];
-          if (neighbours_[v].size() != neighbours_[w].size() ||
-              loop_[std::size_t(v)].partner != loop_[std::size_t(w)].partner)
-            continue;
+          if (neighbours_[v].size() != neighbours_[w].size() || loop_[v].partner != loop_[w].partner) continue;
           double const now = cost(v, place_[v]) + cost(w, place_[w]), then = cost(v, place_[w]) + cost(w, place_[v]);
           if (then < now - 1e-14 * size_ * size_) {
             std::swap(place_[v], place_[w]);
@@ -214,7 +211,7 @@ class EdgeMapper {
   /// Where the end of a chain goes: to its partner, or to the nearest point of an edge, of those that ways from the
   /// partner of the other end lead to, or of those of its loop's partner.
   int place_of(int vertex, int other_end) {
-    int const start = place_[other_end] >= 0 ? place_[other_end] : loop_[std::size_t(vertex)].place;
+    int const start = place_[other_end] >= 0 ? place_[other_end] : loop_[vertex].place;
     if (place_[vertex] < 0) place_[vertex] = network_.nearest_place(guess_of(vertex), start);
     return place_[vertex];
   }
@@ -279,11 +276,10 @@ class EdgeMapper {
     std::size_t half = 1;
     while (half + 2 < chain.vertices.size() && guide.fraction(half) < 0.5) ++half;
     int const first_vertex = chain.vertices.front();
-    int const start = is_corner(first_vertex)
-                          ? place_of(first_vertex, first_vertex)
-                          : network_.nearest_place(points.front(), loop_[std::size_t(first_vertex)].place);
+    int const start = is_corner(first_vertex) ? place_of(first_vertex, first_vertex)
+                                              : network_.nearest_place(points.front(), loop_[first_vertex].place);
     int const middle = network_.nearest_place(points[half] + network_.point(start) - points.front(),
-                                              loop_[std::size_t(first_vertex)].partner < 0 ? -1 : start);
+                                              loop_[first_vertex].partner < 0 ? -1 : start);
     if (start == middle) return std::nullopt;
     auto const at_half = points.begin() + std::ptrdiff_t(half);
     auto first = way_beside(start, middle, {points.begin(), at_half + 1});

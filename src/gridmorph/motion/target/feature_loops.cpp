@@ -11,12 +11,12 @@ namespace {
 void measure(FeatureLoop& loop, std::vector<Vec3> const& points) {
   Vec3 sum;
   for (std::size_t n = 0; n < loop.vertices.size(); ++n) {
-    Vec3 const& a = points[std::size_t(loop.vertices[n])];
-    Vec3 const& b = points[std::size_t(loop.vertices[(n + 1) % loop.vertices.size()])];
+    Vec3 const& a = points[loop.vertices[n]];
+    Vec3 const& b = points[loop.vertices[(n + 1) % loop.vertices.size()]];
     loop.length += distance(a, b);
     sum += (0.5 * distance(a, b)) * (a + b);
   }
-  loop.middle = loop.length > 0 ? (1 / loop.length) * sum : points[std::size_t(loop.vertices.front())];
+  loop.middle = loop.length > 0 ? (1 / loop.length) * sum : points[loop.vertices.front()];
 }
 
 bool alike(FeatureLoop const& a, FeatureLoop const& b) {
@@ -44,9 +44,9 @@ std::vector<int> nearest_first(std::vector<FeatureLoop> const& from, std::vector
   std::vector<int> partner(from.size(), -1);
   std::vector<char> taken(to.size(), 0);
   for (Pair const& pair : pairs) {
-    if (partner[std::size_t(pair.own)] >= 0 || taken[std::size_t(pair.other)] != 0) continue;
-    partner[std::size_t(pair.own)] = pair.other;
-    taken[std::size_t(pair.other)] = 1;
+    if (partner[pair.own] >= 0 || taken[pair.other] != 0) continue;
+    partner[pair.own] = pair.other;
+    taken[pair.other] = 1;
   }
   return partner;
 }
@@ -55,7 +55,7 @@ std::vector<int> nearest_first(std::vector<FeatureLoop> const& from, std::vector
 bool exchange(std::vector<FeatureLoop> const& from, std::vector<FeatureLoop> const& to, int& one, int& other,
               std::size_t a, std::size_t b) {
   if (one < 0 || other < 0) return false;
-  FeatureLoop const &p = to[std::size_t(one)], &q = to[std::size_t(other)];
+  FeatureLoop const &p = to[one], &q = to[other];
   if (!alike(from[a], q) || !alike(from[b], p)) return false;
   double const now = squared_distance(from[a], p) + squared_distance(from[b], q);
   double const then = squared_distance(from[a], q) + squared_distance(from[b], p);
@@ -71,7 +71,7 @@ std::vector<FeatureLoop> feature_loops(std::vector<Vec3> const& points, std::vec
                                        std::function<bool(int a, int b)> const& is_boundary) {
   std::vector<FeatureLoop> out;
   for (FeatureChain& chain : feature_chains(neighbours, std::vector<char>(neighbours.size(), 0))) {
-    if (!chain.closed() || neighbours[std::size_t(chain.vertices.front())].size() != 2) continue;
+    if (!chain.closed() || neighbours[chain.vertices.front()].size() != 2) continue;
     FeatureLoop loop;
     loop.boundary = is_boundary(chain.vertices[0], chain.vertices[1]);
     chain.vertices.pop_back();

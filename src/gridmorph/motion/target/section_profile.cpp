@@ -95,9 +95,9 @@ double SectionProfile::fitted_extreme(int n, std::function<double(Vec3 const&)> 
   for (int const side : {0, 1}) {
     int const step = side == 0 ? -1 : 1;
     double s = 0;
-    for (int k = 1; k < size() / 4 && reach[std::size_t(side)] <= window_ * spacing; ++k) {
+    for (int k = 1; k < size() / 4 && reach[side] <= window_ * spacing; ++k) {
       s += distance(points_[wrap(n + step * k)], points_[wrap(n + step * (k - 1))]);
-      reach[std::size_t(side)] = s;
+      reach[side] = s;
       if (is_corner(wrap(n + step * k))) break;
       add(n + step * k, step * s);
     }

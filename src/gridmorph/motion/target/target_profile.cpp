@@ -192,7 +192,7 @@ bool map_open_lines(std::vector<Vec3> const& points, std::vector<FeatureEdge> co
   bool const turned =
       gap(from.at(0), to.at(1)) + gap(from.at(1), to.at(0)) < gap(from.at(0), to.at(0)) + gap(from.at(1), to.at(1));
   for (std::size_t n = 0; n < own.front().vertices.size(); ++n)
-    image[std::size_t(own.front().vertices[n])] = to.at(turned ? 1 - from.fraction(n) : from.fraction(n));
+    image[own.front().vertices[n]] = to.at(turned ? 1 - from.fraction(n) : from.fraction(n));
   return true;
 }
 

@@ -34,8 +34,8 @@ class Cut {
     std::vector<std::array<int, 3>> kept;
     for (std::size_t n = 0; n < target_.triangles().size(); ++n) {
       auto const& t = target_.triangles()[n];
-      auto const is_above = [&](int v) { return height_[std::size_t(v)] > 0; };
-      auto const is_below = [&](int v) { return height_[std::size_t(v)] < 0; };
+      auto const is_above = [&](int v) { return height_[v] > 0; };
+      auto const is_below = [&](int v) { return height_[v] < 0; };
       if (std::none_of(t.begin(), t.end(), is_below)) {
         kept.push_back(t);
         continue;
@@ -58,15 +58,14 @@ class Cut {
     int left = -1;  // where the corners go below the side
     for (std::size_t k = 0; k < 3; ++k) {
       int const a = t[k], b = t[(k + 1) % 3];
-      double const from = height_[std::size_t(a)], to = height_[std::size_t(b)];
+      double const from = height_[a], to = height_[b];
       if (from >= 0) polygon_.push_back(a);
       if (from >= 0 && to < 0) {
         if (from > 0) polygon_.push_back(crossing(a, b));
         left = polygon_.back();
       } else if (from < 0 && to >= 0) {
         int const back = to > 0 ? crossing(a, b) : b;
-        for (Vec3 const& p :
-             side_.way(points_[std::size_t(left)], points_[std::size_t(back)], normal, cut_within * size_)) {
+        for (Vec3 const& p : side_.way(points_[left], points_[back], normal, cut_within * size_)) {
           polygon_.push_back(int(points_.size()));
           points_.push_back(p);
         }
@@ -80,7 +79,7 @@ class Cut {
     auto const [at, fresh] = crossings_.try_emplace(std::minmax(a, b), int(points_.size()));
     if (fresh) {
       auto const [first, second] = at->first;
-      points_.push_back(side_.crossing(points_[std::size_t(first)], points_[std::size_t(second)]));
+      points_.push_back(side_.crossing(points_[first], points_[second]));
     }
     return at->second;
   }
@@ -90,10 +89,10 @@ class Cut {
     std::vector<Vec3> points;
     for (auto& t : triangles)
       for (int& v : t) {
-        int& own = number[std::size_t(v)];
+        int& own = number[v];
         if (own < 0) {
           own = int(points.size());
-          points.push_back(points_[std::size_t(v)]);
+          points.push_back(points_[v]);
         }
         v = own;
       }
@@ -170,22 +169,20 @@ bool is_steep(PatchSurface const& surface, TargetSide const& side) {
     along += std::abs(side.height(p + step) - side.height(p - step)) / 2e-3;
     all += surface.size;
   };
-  auto const on = [&](int v) {
-    return v >= 0 && std::abs(side.height(surface.points[std::size_t(v)])) <= side.within();
-  };
+  auto const on = [&](int v) { return v >= 0 && std::abs(side.height(surface.points[v])) <= side.within(); };
   if (surface.lines) {
     for (PatchGrid const& grid : surface.grids)
       for (GridFacet const& f : grid.faces)
         for (int const end : {0, 1})
           if (on(f[end])) {
-            Vec3 const t = surface.points[std::size_t(f[1])] - surface.points[std::size_t(f[0])];
-            add(surface.points[std::size_t(f[end])], {-t.y, t.x, 0});
+            Vec3 const t = surface.points[f[1]] - surface.points[f[0]];
+            add(surface.points[f[end]], {-t.y, t.x, 0});
           }
   } else {
     for (GridFacet const& f : surface.facets())
       if (std::count_if(f.begin(), f.end(), on) >= 2)
         for (int const v : f)
-          if (on(v)) add(surface.points[std::size_t(v)], facet_normal(surface.points, f));
+          if (on(v)) add(surface.points[v], facet_normal(surface.points, f));
   }
   return along < 0.7 * all;
 }
@@ -264,7 +261,7 @@ std::vector<char> vertices_on(Boundary const& boundary, PatchSurface const& surf
   std::vector<char> out(surface.points.size(), 0);
   for (int const p : patches)
     for (Index const n : boundary.surface(p).nodes)
-      if (int const v = surface.numbers.find(boundary.coordinates()[n]); v >= 0) out[std::size_t(v)] = 1;
+      if (int const v = surface.numbers.find(boundary.coordinates()[n]); v >= 0) out[v] = 1;
   return out;
 }
 

@@ -119,10 +119,10 @@ std::optional<SpanTable> edge_table(std::vector<std::vector<SpanLine>> const& co
     if (e.*which < 0) return std::nullopt;
   SpanTable table;
   double const share = 1.0 / double(contours.size());
-  for (double h : contours.front()[std::size_t(edges.front().*which)].span) {
+  for (double h : contours.front()[edges.front().*which].span) {
     Sample mean{};
     for (std::size_t c = 0; c < contours.size(); ++c) {
-      Sample const s = contours[c][std::size_t(edges[c].*which)].at(h);
+      Sample const s = contours[c][edges[c].*which].at(h);
       for (int q = 0; q < 4; ++q) mean[q] += share * s[q];
     }
     table.add(h, mean);

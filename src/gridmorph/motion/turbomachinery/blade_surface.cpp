@@ -76,8 +76,7 @@ class Stitcher {
     if (boundary_.is_plane())
       for (FaceGrid& line : found.grids) {
         line.extent[1] = 2;
-        for (int n = 0; n < line.extent[0]; ++n)
-          line.point.push_back(line.point[std::size_t(n)] + int(own.nodes.size()));
+        for (int n = 0; n < line.extent[0]; ++n) line.point.push_back(line.point[n] + int(own.nodes.size()));
       }
     return found;
   }
@@ -91,9 +90,9 @@ class Stitcher {
       Piece piece;
       piece.extent = grid.extent;
       for (int const n : grid.point) {
-        piece.points.push_back(all.points[std::size_t(n)]);
-        piece.span.push_back(all.span[std::size_t(n)]);
-        piece.nodes.push_back(all.nodes[std::size_t(n)]);
+        piece.points.push_back(all.points[n]);
+        piece.span.push_back(all.span[n]);
+        piece.nodes.push_back(all.nodes[n]);
       }
       any = add_grid(piece) || any;
     }
@@ -113,8 +112,8 @@ class Stitcher {
       std::array<Vec3, 3> x;
       std::array<double, 3> span{};
       for (std::size_t k = 0; k < 3; ++k) {
-        x[k] = list.points[std::size_t(f[k])];
-        span[k] = all.span[std::size_t(f[k])];
+        x[k] = list.points[f[k]];
+        span[k] = all.span[f[k]];
       }
       double const own = norm(cross(x[1] - x[0], x[2] - x[0]));
       area += own;
@@ -129,8 +128,8 @@ class Stitcher {
     for (Vec3 const& x : piece.points)
       height += input_.height(input_.frame.meridional(x)) / double(piece.points.size());
     int const direction = detail::spanwise_direction(
-        piece.extent, [&](int n) { return piece.points[std::size_t(n)]; },
-        [&](int a, int b) { return std::abs(piece.span[std::size_t(b)] - piece.span[std::size_t(a)]) * height; });
+        piece.extent, [&](int n) { return piece.points[n]; },
+        [&](int a, int b) { return std::abs(piece.span[b] - piece.span[a]) * height; });
     if (direction < 0) return false;
     add_lines(piece, direction, piece.nodes);
     return true;
@@ -161,8 +160,8 @@ class Stitcher {
     double lo = std::numeric_limits<double>::infinity(), hi = -lo, first = -lo, last = lo;
     for (BladeContour const& contour : blade_.contours)
       for (int const l : contour.lines) {
-        double const a = blade_.nodes[std::size_t(blade_.lines[std::size_t(l)].front())].span;
-        double const b = blade_.nodes[std::size_t(blade_.lines[std::size_t(l)].back())].span;
+        double const a = blade_.nodes[blade_.lines[l].front()].span;
+        double const b = blade_.nodes[blade_.lines[l].back()].span;
         lo = std::min(lo, a);
         hi = std::max(hi, b);
         first = std::max(first, a);
@@ -201,9 +200,9 @@ class Stitcher {
         for (SlicePlace const& place : line) {
           CylindricalMotion motion;
           for (auto const& [n, w] : place.weights) {
-            motion.axial += w * nodes[std::size_t(n)].motion.axial;
-            motion.radial += w * nodes[std::size_t(n)].motion.radial;
-            motion.angle_rad += w * nodes[std::size_t(n)].motion.angle_rad;
+            motion.axial += w * nodes[n].motion.axial;
+            motion.radial += w * nodes[n].motion.radial;
+            motion.angle_rad += w * nodes[n].motion.angle_rad;
           }
           list.push_back(int(blade_.nodes.size()));
           blade_.nodes.push_back({input_.position(meridional(place.point)).m, place.span, motion, place.point});
@@ -220,10 +219,10 @@ class Stitcher {
     auto const add = [&](int a, int b, int c) {
       if (a != b && b != c && c != a) input.triangles.push_back({a, b, c});
     };
-    int const a = number[std::size_t(facet[0])], b = number[std::size_t(facet[1])], c = number[std::size_t(facet[2])];
+    int const a = number[facet[0]], b = number[facet[1]], c = number[facet[2]];
     if (facet[3] < 0) return add(a, b, c);
-    int const d = number[std::size_t(facet[3])];
-    auto const x = [&](int n) { return input.points[std::size_t(n)]; };
+    int const d = number[facet[3]];
+    auto const x = [&](int n) { return input.points[n]; };
     if (distance(x(a), x(c)) <= distance(x(b), x(d))) {
       add(a, b, c);
       add(a, c, d);

@@ -119,11 +119,11 @@ std::vector<SurfacePart> FacetCuts::parts() const {
   DisjointSets<int> sets(triangles_.size());
   std::vector<int> first(edges_.size(), -1);
   for (int t = 0; t < int(triangles_.size()); ++t)
-    for (int const e : edges_of_[std::size_t(t)]) {
-      if (first[std::size_t(e)] < 0)
-        first[std::size_t(e)] = t;
+    for (int const e : edges_of_[t]) {
+      if (first[e] < 0)
+        first[e] = t;
       else
-        sets.join(first[std::size_t(e)], t);
+        sets.join(first[e], t);
     }
   std::map<int, std::vector<int>> out;
   for (int t = 0; t < int(triangles_.size()); ++t) out[sets.root(t)].push_back(t);
@@ -142,8 +142,8 @@ std::vector<SurfacePart> FacetCuts::parts() const {
 }
 
 std::pair<double, double> FacetCuts::range(int t) const {
-  auto const& [a, b, c] = triangles_[std::size_t(t)];
-  return std::minmax({span_[std::size_t(a)], span_[std::size_t(b)], span_[std::size_t(c)]});
+  auto const& [a, b, c] = triangles_[t];
+  return std::minmax({span_[a], span_[b], span_[c]});
 }
 
 std::pair<double, double> FacetCuts::range(SurfacePart const& part) const {
@@ -154,7 +154,7 @@ std::pair<double, double> FacetCuts::range(SurfacePart const& part) const {
 
 std::vector<std::array<int, 3>> FacetCuts::corners(SurfacePart const& part) const {
   std::vector<std::array<int, 3>> out;
-  for (int const t : part.triangles) out.push_back(triangles_[std::size_t(t)]);
+  for (int const t : part.triangles) out.push_back(triangles_[t]);
   return out;
 }
 
@@ -180,12 +180,11 @@ CutLine FacetCuts::cut(SurfacePart const& part, double h, bool upper) const {
   auto const begin = std::lower_bound(part.low.begin(), part.low.end(), h - part.rise);
   auto const end = std::upper_bound(part.low.begin(), part.low.end(), h);
   for (auto at = begin; at != end; ++at) {
-    int const t = part.triangles[std::size_t(at - part.low.begin())];
+    int const t = part.triangles[at - part.low.begin()];
     std::array<int, 2> crossed{-1, -1};
     int n = 0;
-    for (int const e : edges_of_[std::size_t(t)])
-      if (above(edges_[std::size_t(e)][0], h, upper) != above(edges_[std::size_t(e)][1], h, upper) && n < 2)
-        crossed[std::size_t(n++)] = e;
+    for (int const e : edges_of_[t])
+      if (above(edges_[e][0], h, upper) != above(edges_[e][1], h, upper) && n < 2) crossed[n++] = e;
     if (n < 2) continue;
     join(crossed[0], crossed[1]);
     join(crossed[1], crossed[0]);
@@ -216,14 +215,14 @@ CutLine FacetCuts::cut(SurfacePart const& part, double h, bool upper) const {
 }
 
 SlicePlace FacetCuts::place(int e, double h) const {
-  auto const [a, b] = edges_[std::size_t(e)];
+  auto const [a, b] = edges_[e];
   double const t = fraction(e, h);
   return {{{a, 1 - t}, {b, t}}, between(e, t), h};
 }
 
 bool FacetCuts::rises(std::array<int, 3> const& t) const {
-  auto const at = [&](int k) { return input_.points[std::size_t(t[std::size_t(k)])]; };
-  auto const span = [&](int k) { return span_[std::size_t(t[std::size_t(k)])]; };
+  auto const at = [&](int k) { return input_.points[t[k]]; };
+  auto const span = [&](int k) { return span_[t[k]]; };
   Vec3 const middle = (1.0 / 3) * (at(0) + at(1) + at(2));
   return gradient_in({at(0), at(1), at(2)}, {span(0), span(1), span(2)}) * input_.height(middle) > least_span_gain;
 }
@@ -233,28 +232,28 @@ void FacetCuts::find_edges() {
   for (auto const& t : triangles_) {
     auto& own = edges_of_.emplace_back();
     for (int s = 0; s < 3; ++s) {
-      std::pair<int, int> const ends = std::minmax(t[std::size_t(s)], t[std::size_t((s + 1) % 3)]);
+      std::pair<int, int> const ends = std::minmax(t[s], t[(s + 1) % 3]);
       auto const [at, fresh] = number.try_emplace(ends, int(edges_.size()));
       if (fresh) edges_.push_back({ends.first, ends.second});
-      own[std::size_t(s)] = at->second;
+      own[s] = at->second;
     }
   }
 }
 
 double FacetCuts::linear_fraction(int e, double h) const {
-  auto const [a, b] = edges_[std::size_t(e)];
-  double const fa = span_[std::size_t(a)], fb = span_[std::size_t(b)];
+  auto const [a, b] = edges_[e];
+  double const fa = span_[a], fb = span_[b];
   return fb != fa ? std::clamp((h - fa) / (fb - fa), 0.0, 1.0) : 0.0;
 }
 
 Vec3 FacetCuts::between(int e, double t) const {
-  auto const [a, b] = edges_[std::size_t(e)];
-  return (1 - t) * input_.points[std::size_t(a)] + t * input_.points[std::size_t(b)];
+  auto const [a, b] = edges_[e];
+  return (1 - t) * input_.points[a] + t * input_.points[b];
 }
 
 double FacetCuts::fraction(int e, double h) const {
-  auto const [a, b] = edges_[std::size_t(e)];
-  double lo = 0, hi = 1, f_lo = span_[std::size_t(a)] - h, f_hi = span_[std::size_t(b)] - h;
+  auto const [a, b] = edges_[e];
+  double lo = 0, hi = 1, f_lo = span_[a] - h, f_hi = span_[b] - h;
   double t = linear_fraction(e, h);
   if (f_lo == 0 || f_hi == 0 || (f_lo < 0) == (f_hi < 0)) return t;
   constexpr int steps = 3;

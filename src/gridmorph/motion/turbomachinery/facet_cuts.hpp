@@ -82,7 +82,7 @@ class FacetCuts {
   [[nodiscard]] bool rises(std::array<int, 3> const& triangle) const;
   void find_edges();
   [[nodiscard]] bool above(int point, double span, bool upper) const {
-    return upper ? span_[std::size_t(point)] >= span : span_[std::size_t(point)] > span;
+    return upper ? span_[point] >= span : span_[point] > span;
   }
   [[nodiscard]] double linear_fraction(int edge, double span) const;
   [[nodiscard]] double fraction(int edge, double span) const;

@@ -20,7 +20,7 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 std::vector<std::string> names_of_blades(Boundary const& boundary, std::vector<int> const& patches) {
   std::set<std::string> names;
   for (int const p : patches) {
-    Patch const& patch = boundary.patches()[std::size_t(p)];
+    Patch const& patch = boundary.patches()[p];
     names.insert(patch.families.empty() ? patch.name : patch.families.front());
   }
   return {names.begin(), names.end()};
@@ -105,9 +105,9 @@ std::optional<std::vector<Vec3>> pitch_directions(Boundary const& boundary, Reso
   constexpr double no_turn = 1e-9, same = 1e-6;
   std::vector<Vec3> found;
   for (AnyConnection const& c : boundary.connections()) {
-    if (!c.periodic || !in_row[std::size_t(c.zone)]) continue;
-    int const r = motion.interface[std::size_t(c.number)].rule;
-    if (followers && !(r >= 0 && std::holds_alternative<FollowRule>(motion.rules[std::size_t(r)].rule))) continue;
+    if (!c.periodic || !in_row[c.zone]) continue;
+    int const r = motion.interface[c.number].rule;
+    if (followers && !(r >= 0 && std::holds_alternative<FollowRule>(motion.rules[r].rule))) continue;
     RigidTransform const t = boundary.transform(c.number);
     double turned = 0;
     for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
@@ -179,8 +179,7 @@ std::vector<RigidTransform> periodic_transforms_of_row(Boundary const& boundary,
   std::vector<bool> const in_row = zones_of_row(boundary, blades);
   std::vector<RigidTransform> out;
   for (AnyConnection const& connection : boundary.connections())
-    if (connection.periodic && in_row[std::size_t(connection.zone)])
-      out.push_back(boundary.transform(connection.number));
+    if (connection.periodic && in_row[connection.zone]) out.push_back(boundary.transform(connection.number));
   return out;
 }
 

@@ -133,7 +133,7 @@ Vec3 span_direction(Boundary const& boundary, std::vector<int> const& patches, s
   if (boundary.is_plane()) return unit(boundary.across());
   auto const& all = boundary.patches();
   for (int q = 0; q < int(all.size()); ++q) {
-    if (all[std::size_t(q)].kind != PatchKind::symmetry) continue;
+    if (all[q].kind != PatchKind::symmetry) continue;
     if (std::none_of(patches.begin(), patches.end(), [&](int p) { return boundary.share_nodes(p, q); })) continue;
     PlaneFit const fit = fit_plane(boundary.points(q));
     if (!fit.determined) continue;

@@ -65,7 +65,7 @@ class Section {
   }
 
  private:
-  [[nodiscard]] Sample const& place(int n) const { return places_[std::size_t(((n % size()) + size()) % size())]; }
+  [[nodiscard]] Sample const& place(int n) const { return places_[((n % size()) + size()) % size()]; }
   [[nodiscard]] int extreme(int sign) const {
     int best = 0;
     for (int n = 1; n < size(); ++n)

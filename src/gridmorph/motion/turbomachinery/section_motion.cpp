@@ -34,7 +34,7 @@ EdgeTrim::EdgeTrim(Boundary const& boundary, SectionFrame const& frame, std::vec
   std::set<int> touched;
   for (std::size_t q = 0; q < boundary.patches().size(); ++q) {
     int const s = surfaces.of_patch[q];
-    if (s < 0 || surfaces.surfaces[std::size_t(s)].kind == SlipSurface::Kind::axial) continue;
+    if (s < 0 || surfaces.surfaces[s].kind == SlipSurface::Kind::axial) continue;
     for (int p : patches)
       if (boundary.share_nodes(p, int(q))) touched.insert(s);
   }
@@ -50,7 +50,7 @@ EdgeTrim::EdgeTrim(Boundary const& boundary, SectionFrame const& frame, std::vec
   height_ = frame.height();
   bool root = false, tip = false;
   for (int s : touched) {
-    surfaces_.push_back(&surfaces.surfaces[std::size_t(s)]);
+    surfaces_.push_back(&surfaces.surfaces[s]);
     // Which end of the span it closes: the one its nearest points are at.
     Vec3 const* nearest = &points.front();
     for (Vec3 const& p : points)

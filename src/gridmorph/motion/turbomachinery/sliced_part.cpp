@@ -42,7 +42,7 @@ bool SlicedPart::holds(SlicedPart const& other) const {
   Vec3 const p = other.reference_.points.front();
   bool inside = false;
   for (int k = 0, j = reference_.size() - 1; k < reference_.size(); j = k++) {
-    Vec3 const a = reference_.points[std::size_t(k)] - p, b = reference_.points[std::size_t(j)] - p;
+    Vec3 const a = reference_.points[k] - p, b = reference_.points[j] - p;
     double const ay = dot(a, y), by = dot(b, y);
     if ((ay > 0) == (by > 0)) continue;
     if (dot(a, x) + (dot(b, x) - dot(a, x)) * ay / (ay - by) > 0) inside = !inside;

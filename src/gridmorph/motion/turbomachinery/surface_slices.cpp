@@ -97,9 +97,7 @@ class ContourMaker {
     auto const farthest = [&](int from) {
       int best = from;
       for (int n = 0; n < line.size(); ++n)
-        if (distance(line.points[std::size_t(n)], line.points[std::size_t(from)]) >
-            distance(line.points[std::size_t(best)], line.points[std::size_t(from)]))
-          best = n;
+        if (distance(line.points[n], line.points[from]) > distance(line.points[best], line.points[from])) best = n;
       return best;
     };
     int one = farthest(0), other = farthest(one);
@@ -109,17 +107,16 @@ class ContourMaker {
       one = next;
       other = farthest(one);
     }
-    if (input_.along(line.points[std::size_t(one)]) > input_.along(line.points[std::size_t(other)]))
-      std::swap(one, other);
+    if (input_.along(line.points[one]) > input_.along(line.points[other])) std::swap(one, other);
     return {one, other};
   }
 
   [[nodiscard]] static double turn(CutLine const& line, int n) {
     int const size = line.size();
     if (!line.closed && (n == 0 || n == size - 1)) return std::numbers::pi;
-    auto const at = [&](int k) { return line.points[std::size_t((k + size) % size)]; };
+    auto const at = [&](int k) { return line.points[(k + size) % size]; };
     // Points that a corner of a facet brings together have no direction between them.
-    double const small = 1e-9 * distance(line.points.front(), line.points[std::size_t(size / 2)]);
+    double const small = 1e-9 * distance(line.points.front(), line.points[size / 2]);
     int before = n - 1, after = n + 1;
     while (n - before < size && distance(at(before), at(n)) <= small) --before;
     while (after - n < size && distance(at(after), at(n)) <= small) ++after;
@@ -135,16 +132,14 @@ class ContourMaker {
       return out;
     }
     auto const ends = chord_ends(line);
-    double const chord = distance(line.points[std::size_t(ends[0])], line.points[std::size_t(ends[1])]);
+    double const chord = distance(line.points[ends[0]], line.points[ends[1]]);
     std::vector<std::pair<int, int>> found;  // point, edge
     for (int edge = 0; edge < 2; ++edge) {
       std::vector<int> corners;
       for (int n = 0; n < line.size(); ++n)
-        if (distance(line.points[std::size_t(n)], line.points[std::size_t(ends[std::size_t(edge)])]) <
-                edge_reach * chord &&
-            turn(line, n) > corner_angle)
+        if (distance(line.points[n], line.points[ends[edge]]) < edge_reach * chord && turn(line, n) > corner_angle)
           corners.push_back(n);
-      if (corners.empty()) corners = {ends[std::size_t(edge)]};
+      if (corners.empty()) corners = {ends[edge]};
       if (corners.size() > 2) {
         // The two that the sides of the blade end at: on both sides of the longest way around that has no corner.
         std::size_t widest = 0;
@@ -188,7 +183,7 @@ class ContourMaker {
     int const size = line.size();
     std::vector<SlicePlace> exact;
     for (int const e : line.edges) exact.push_back(cuts_.place(e, h));
-    auto const at = [&](int n) -> SlicePlace const& { return exact[std::size_t(n % size)]; };
+    auto const at = [&](int n) -> SlicePlace const& { return exact[n % size]; };
     for (std::size_t s = 0; s + 1 < anchors.at.size(); ++s) {
       int const from = anchors.at[s], to = anchors.at[s + 1];
       std::vector<double> length{0};
@@ -198,8 +193,8 @@ class ContourMaker {
         double const wanted = length.back() * 0.5 * (1 - std::cos(std::numbers::pi * k / parts));
         auto const above = std::upper_bound(length.begin(), length.end(), wanted);
         int const n = std::min(int(above - length.begin()), int(length.size()) - 1) - 1;
-        double const piece = length[std::size_t(n) + 1] - length[std::size_t(n)];
-        double const t = piece > 0 ? (wanted - length[std::size_t(n)]) / piece : 0;
+        double const piece = length[n + 1] - length[n];
+        double const t = piece > 0 ? (wanted - length[n]) / piece : 0;
         out.push_back(between(at(from + n), at(from + n + 1), k == 0 ? 0 : t));
       }
     }

@@ -107,7 +107,7 @@ ChainLaw ChainLaws::along(OfChain const& of, std::array<bool, 2> const& near) co
       return {LineLaw::cubic, {near[0] ? 0 : 1.5, near[1] ? 0 : 1.5}};
     case Law::own: {
       ChainLaw law = LineLaw::table;
-      law.knots = tables_[std::size_t(of.choice.own)][of.from == From::either ? 1 : 0];
+      law.knots = tables_[of.choice.own][of.from == From::either ? 1 : 0];
       return law;
     }
   }
@@ -116,7 +116,7 @@ ChainLaw ChainLaws::along(OfChain const& of, std::array<bool, 2> const& near) co
 
 std::string ChainLaws::name(Choice const& choice) const {
   constexpr std::array<char const*, 5> names{"linear", "c1", "c2", "mixed", "matched"};
-  return choice.law == Law::own ? own_names_[std::size_t(choice.own)] : names.at(std::size_t(choice.law));
+  return choice.law == Law::own ? own_names_[choice.own] : names.at(std::size_t(choice.law));
 }
 
 }  // namespace gridmorph

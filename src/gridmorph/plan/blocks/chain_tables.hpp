@@ -23,7 +23,7 @@ class RotationTable {
  public:
   explicit RotationTable(std::vector<Mat3>& table) : table_(table) {}
   std::int32_t number(Mat3 const& m);
-  [[nodiscard]] Mat3 const& operator[](std::int32_t number) const { return table_[std::size_t(number)]; }
+  [[nodiscard]] Mat3 const& operator[](std::int32_t number) const { return table_[number]; }
 
  private:
   std::vector<Mat3>& table_;

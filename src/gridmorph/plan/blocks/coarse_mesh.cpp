@@ -42,20 +42,20 @@ Index count_nodes(std::vector<ZoneCuts> const& planes) {
 }
 
 Index3 CoarseMesh::fine_index(int zone, Index3 const& p) const {
-  ZoneCuts const& kept = planes[std::size_t(zone)];
-  return {kept[0][std::size_t(p[0])], kept[1][std::size_t(p[1])], kept[2][std::size_t(p[2])]};
+  ZoneCuts const& kept = planes[zone];
+  return {kept[0][p[0]], kept[1][p[1]], kept[2][p[2]]};
 }
 
 bool CoarseMesh::is_cell(int zone, Index3 const& cell) const {
   for (int a = 0; a < 3; ++a) {
-    std::vector<int> const& kept = planes[std::size_t(zone)][std::size_t(a)];
-    if (kept[std::size_t(cell[std::size_t(a)]) + 1] != kept[std::size_t(cell[std::size_t(a)])] + 1) return false;
+    std::vector<int> const& kept = planes[zone][a];
+    if (kept[std::size_t(cell[a]) + 1] != kept[cell[a]] + 1) return false;
   }
   return true;
 }
 
 int CoarseMesh::place(int zone, int axis, int fine_index) const {
-  std::vector<int> const& kept = planes[std::size_t(zone)][std::size_t(axis)];
+  std::vector<int> const& kept = planes[zone][axis];
   return int(std::lower_bound(kept.begin(), kept.end(), fine_index) - kept.begin());
 }
 
@@ -98,7 +98,7 @@ void take_lines(Mesh const& mesh, int zone, CoarseMesh& coarse) {
           for (int const kept : coarse.planes[zone][axis]) {
             for (; at < kept; ++at, node += fine_step)
               length += distance(mesh.coordinates[node], mesh.coordinates[node + fine_step]);
-            coarse.lengths[axis][std::size_t(to)] = length;
+            coarse.lengths[axis][to] = length;
             to += step;
           }
         }
@@ -132,7 +132,7 @@ CoarseMesh coarsen(Mesh const& mesh, Links const& links, std::vector<ZoneCuts> p
     link.range = places(coarse, link.zone, link.range);
   }
   out.coordinates = Coordinates(out.n_nodes());
-  for (auto& lengths : coarse.lengths) lengths.resize(std::size_t(out.n_nodes()));
+  for (auto& lengths : coarse.lengths) lengths.resize(out.n_nodes());
   for (int z = 0; z < int(mesh.zones.size()); ++z) take_lines(mesh, z, coarse);
   return coarse;
 }

@@ -18,7 +18,7 @@ constexpr double narrow = 0.5;
 std::vector<int> patches_at(Mesh const& mesh, LinePlace const& place) {
   std::vector<int> found;
   for (int p = 0; p < int(mesh.patches.size()); ++p) {
-    Patch const& patch = mesh.patches[std::size_t(p)];
+    Patch const& patch = mesh.patches[p];
     if (patch.zone == place.zone && patch.kind != PatchKind::region && patch.range.extent(place.axis) == 1 &&
         patch.range.contains(place.at))
       found.push_back(p);
@@ -34,7 +34,7 @@ struct LinesOff {
 
 LinesOff lines_off(Mesh const& mesh, Links const& links, int patch, std::vector<char> const& slips) {
   constexpr int most = 9;  // along either direction
-  IndexRange const& r = mesh.patches[std::size_t(patch)].range;
+  IndexRange const& r = mesh.patches[patch].range;
   int const axis = normal_axis(r);
   int const step = r.begin[axis] == 0 ? 1 : -1;
   Index3 n{};
@@ -47,13 +47,12 @@ LinesOff lines_off(Mesh const& mesh, Links const& links, int patch, std::vector<
         Index3 at{};
         for (int d = 0; d < 3; ++d)
           at[d] = r.begin[d] + (n[d] > 1 ? int(Index(number[d]) * (r.extent(d) - 1) / (n[d] - 1)) : 0);
-        LinePlace place{mesh.patches[std::size_t(patch)].zone, at, axis, step};
+        LinePlace place{mesh.patches[patch].zone, at, axis, step};
         Index nodes = 0;
         while (nodes++ < mesh.n_nodes() && advance(mesh, links, place, lines.mean_length)) {
         }
         auto const ends = patches_at(mesh, place);
-        lines.to_slip =
-            lines.to_slip && std::any_of(ends.begin(), ends.end(), [&](int p) { return slips[std::size_t(p)] != 0; });
+        lines.to_slip = lines.to_slip && std::any_of(ends.begin(), ends.end(), [&](int p) { return slips[p] != 0; });
         if (!lines.to_slip) return lines;
       }
   lines.mean_length /= double(n[0]) * n[1] * n[2];
@@ -63,7 +62,7 @@ LinesOff lines_off(Mesh const& mesh, Links const& links, int patch, std::vector<
 double area_of(Mesh const& mesh, Patch const& patch) {
   IndexRange const& r = patch.range;
   int const axis = normal_axis(r), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-  Zone const& zone = mesh.zones[std::size_t(patch.zone)];
+  Zone const& zone = mesh.zones[patch.zone];
   double area = 0;
   for (int q = r.begin[v]; q < r.end[v] - 1; ++q)
     for (int p = r.begin[u]; p < r.end[u] - 1; ++p) {
@@ -90,13 +89,13 @@ std::set<int> edges_of(Lattice const& lattice, int face_class) {
 /// Faces that continue these ones across edges, as far as they go, where `takes` lets them.
 template <class Takes>
 std::vector<char> continued(Lattice const& lattice, std::vector<int> faces, Takes const& takes) {
-  std::vector<char> reached(std::size_t(lattice.n_classes()), 0);
-  for (int const f : faces) reached[std::size_t(f)] = 1;
+  std::vector<char> reached(lattice.n_classes(), 0);
+  for (int const f : faces) reached[f] = 1;
   for (std::size_t n = 0; n < faces.size(); ++n)
     for (int const edge : edges_of(lattice, faces[n])) {
       int const next = straight_on(star_of(lattice, edge), faces[n]);
-      if (next < 0 || reached[std::size_t(next)] != 0 || !takes(next)) continue;
-      reached[std::size_t(next)] = 1;
+      if (next < 0 || reached[next] != 0 || !takes(next)) continue;
+      reached[next] = 1;
       faces.push_back(next);
     }
   return reached;
@@ -122,7 +121,7 @@ std::vector<char> gap_walls(Mesh const& mesh, Links const& links, BoundaryMotion
   for (std::size_t p = 0; p < n; ++p) {
     int const rule = motion.patch[p].rule;
     if (kinds[p] != PatchKind::wall || is_box(mesh.patches[p]) || rule < 0 || !surface.is_explicit(rule) ||
-        std::holds_alternative<FixedRule>(motion.rules[std::size_t(rule)].rule))
+        std::holds_alternative<FixedRule>(motion.rules[rule].rule))
       continue;
     LinesOff const lines = lines_off(mesh, links, int(p), slips);
     if (!lines.to_slip) continue;
@@ -139,7 +138,7 @@ Gaps::Gaps(Mesh const& mesh, Topology const& topology, ResolvedMotion const& mot
   Blocks const& blocks = topology.blocks;
   std::vector<int> tips;
   for (int c = 0; c < lattice.n_classes(); ++c)
-    if (int const patch = blocks.patch_of_face()[c]; patch >= 0 && walls[std::size_t(patch)] != 0) tips.push_back(c);
+    if (int const patch = blocks.patch_of_face()[c]; patch >= 0 && walls[patch] != 0) tips.push_back(c);
   if (tips.empty()) return;
   std::vector<char> const plane = continued(lattice, tips, [](int) { return true; });
 
@@ -153,25 +152,23 @@ Gaps::Gaps(Mesh const& mesh, Topology const& topology, ResolvedMotion const& mot
     if (chain) across.push_back(face_at_end(topology, *chain));
   }
   std::set<int> rules;
-  for (int const face : across) rules.insert(motion.patch[std::size_t(blocks.patch_of_face()[face])].rule);
+  for (int const face : across) rules.insert(motion.patch[blocks.patch_of_face()[face]].rule);
   std::vector<char> const slides = continued(lattice, across, [&](int face) {
     int const patch = blocks.patch_of_face()[face];
-    return patch >= 0 && rules.contains(motion.patch[std::size_t(patch)].rule);
+    return patch >= 0 && rules.contains(motion.patch[patch].rule);
   });
 
   // From there back to the plane of the tips.
-  axis_of_block_.assign(std::size_t(blocks.size()), -1);
+  axis_of_block_.assign(blocks.size(), -1);
   std::set<BlockFace> done;
   for (int c = 0; c < lattice.n_classes(); ++c) {
-    if (slides[std::size_t(c)] == 0) continue;
+    if (slides[c] == 0) continue;
     BlockFace const start = blocks.face_of(lattice.face_sides(c).front());
     if (!done.insert(start).second) continue;
-    auto const chain = walk_from(mesh, topology, nothing, start, [&](Chain const& so_far) {
-      return plane[std::size_t(face_at_end(topology, so_far))] != 0;
-    });
+    auto const chain = walk_from(mesh, topology, nothing, start,
+                                 [&](Chain const& so_far) { return plane[face_at_end(topology, so_far)] != 0; });
     if (!chain) continue;
-    for (ChainStep const& step : chain->steps)
-      axis_of_block_[std::size_t(step.block)] = step.to_chain.inverse().axis[0];
+    for (ChainStep const& step : chain->steps) axis_of_block_[step.block] = step.to_chain.inverse().axis[0];
   }
 }
 

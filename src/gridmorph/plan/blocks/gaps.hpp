@@ -33,10 +33,10 @@ class Gaps {
 
   [[nodiscard]] bool any() const { return !axis_of_block_.empty(); }
   /// Whether the block is in a gap layer.
-  [[nodiscard]] bool holds(int block) const { return any() && axis_of_block_[std::size_t(block)] >= 0; }
+  [[nodiscard]] bool holds(int block) const { return any() && axis_of_block_[block] >= 0; }
   /// Whether a step of a chain runs across a gap, from wall to wall.
   [[nodiscard]] bool runs_across(ChainStep const& step) const {
-    return holds(step.block) && axis_of_block_[std::size_t(step.block)] == step.to_chain.inverse().axis[0];
+    return holds(step.block) && axis_of_block_[step.block] == step.to_chain.inverse().axis[0];
   }
   /// Whether all of a chain does.
   [[nodiscard]] bool runs_across(Chain const& chain) const;

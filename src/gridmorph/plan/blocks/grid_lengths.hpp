@@ -29,7 +29,7 @@ class GridLengths {
     if (up_to_[0].empty()) return distance(mesh_.coordinates[from], mesh_.coordinates[to]);
     Index const step = from < to ? to - from : from - to;
     auto const& up_to = up_to_[step == 1 ? 0 : step == mesh_.zones[mesh_.zone_of(from)].strides()[1] ? 1 : 2];
-    double const length = up_to[std::size_t(to)] - up_to[std::size_t(from)];
+    double const length = up_to[to] - up_to[from];
     return length < 0 ? -length : length;
   }
   [[nodiscard]] Place operator[](Index node) const { return {this, node}; }

@@ -82,7 +82,7 @@ void note_loose_nodes(Mesh const& mesh, BoundaryRequests const& boundary, Plan& 
   auto const slots = slots_of(pairs, plan);
   std::unordered_map<Index, int> rule_of_slot;
   for (auto const& request : boundary.requests)
-    rule_of_slot.try_emplace(plan.boundary_slots[std::size_t(request.boundary_node)], request.rule);
+    rule_of_slot.try_emplace(plan.boundary_slots[request.boundary_node], request.rule);
   auto const rule = [&](Index s) {
     auto const at = rule_of_slot.find(s);
     return at == rule_of_slot.end() ? -1 : at->second;

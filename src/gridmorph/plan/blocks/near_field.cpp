@@ -122,7 +122,7 @@ std::vector<NearField> near_fields(Mesh const& mesh, Links const& links, Boundar
                           std::string(rule_name(motion.patch_rule(p))) + "'); near fields need walls that are moved");
       }
     }
-    std::erase_if(field.walls, [&](int p) { return at_gap[std::size_t(p)] != 0; });
+    std::erase_if(field.walls, [&](int p) { return at_gap[p] != 0; });
     if (field.walls.empty()) continue;
     switch (option.extent) {
       case BoundaryLayer::Extent::block: break;

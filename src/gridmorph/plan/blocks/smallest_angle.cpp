@@ -78,7 +78,7 @@ double largest_cosine(Mesh const& mesh, NodeBox const& box, int k) {
   int const n = r.extent(0);
   // Along i the edge that leaves node i backwards is that of node i - 1: one row, with a zero before and after.
   Row along_i(n + 1), next_j(n), previous_j(n), next_k(n), previous_k(n);
-  std::vector<double> largest(std::size_t(n), 0.0);
+  std::vector<double> largest(n, 0.0);
   for (int j = r.begin[1]; j < r.end[1]; ++j) {
     Index const first = zone.node({r.begin[0], j, k});
     Coordinates const& c = mesh.coordinates;
@@ -107,9 +107,8 @@ std::vector<double> largest_cosines(HostInstance const& host, Mesh const& mesh, 
   for (int b = 0; b < int(boxes.size()); ++b)
     for (int k = boxes[b].nodes.begin[2]; k < boxes[b].nodes.end[2]; ++k) planes.push_back({b, k});
   std::vector<double> of_plane(planes.size());
-  detail::for_all_parts(host, "gridmorph::largest_cosines", Index(planes.size()), [&](Index p) {
-    of_plane[std::size_t(p)] = largest_cosine(mesh, boxes[planes[p].box], planes[p].k);
-  });
+  detail::for_all_parts(host, "gridmorph::largest_cosines", Index(planes.size()),
+                        [&](Index p) { of_plane[p] = largest_cosine(mesh, boxes[planes[p].box], planes[p].k); });
   std::vector<double> largest(boxes.size(), 0.0);
   for (std::size_t p = 0; p < planes.size(); ++p)
     largest[planes[p].box] = std::max(largest[planes[p].box], of_plane[p]);

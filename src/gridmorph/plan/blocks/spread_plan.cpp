@@ -35,7 +35,7 @@ class Held {
       int const owner = lattice.copies(c).front().entity;
       bool const held =
           region || (lattice.dimension(owner) == 3 && topology.blocks.region_of(lattice.piece_of_volume(owner)) >= 0);
-      if (held) for_closure(lattice, owner, [&](int entity) { inside_[std::size_t(lattice.class_of(entity))] = 1; });
+      if (held) for_closure(lattice, owner, [&](int entity) { inside_[lattice.class_of(entity)] = 1; });
       any_ = any_ || held;
     }
   }
@@ -48,7 +48,7 @@ class Held {
     auto const all = int(chain.steps.size());
     if (!any_) return all;
     for (int m = 0; m < all; ++m)
-      if (is_beside(chain.steps[std::size_t(m)])) return std::max(1, m);
+      if (is_beside(chain.steps[m])) return std::max(1, m);
     return all;
   }
 
@@ -62,8 +62,7 @@ class Held {
       for (which[0] = 0; which[0] < 3; ++which[0])
         for (which[1] = 0; which[1] < 3; ++which[1])
           for (which[2] = 0; which[2] < 3; ++which[2])
-            if (which[along] == 1 &&
-                inside_[std::size_t(lattice.class_of(lattice.entity_of_piece(placed.piece, which)))] != 0)
+            if (which[along] == 1 && inside_[lattice.class_of(lattice.entity_of_piece(placed.piece, which))] != 0)
               return true;
     }
     return false;
@@ -248,7 +247,7 @@ std::vector<int> slip_surface_numbers(std::size_t n_patches, BoundaryMotion cons
     int const s = motion.slip_surface_of(p);
     if (s < 0) continue;
     auto const [at, fresh] = place.try_emplace(s, int(surfaces.size()));
-    if (fresh) surfaces.push_back(motion.slip_surfaces()[std::size_t(s)]);
+    if (fresh) surfaces.push_back(motion.slip_surfaces()[s]);
     number[p] = at->second;
   }
   return number;

@@ -119,8 +119,8 @@ void set_pivots(PlanContext const& context, Chain const& chain, ChainLayout cons
       for (int q = 0; q < rows->n_q; ++q)
         for (int p = 0; p < rows->n_p; ++p) {
           Index3 const at = box.position(node_at(*rows, p, q));
-          lines.end_pivots[std::size_t(device.first_end_value + end * device.section_size() + at[1] +
-                                       Index(device.n_a) * at[2])] = centre;
+          lines.end_pivots[device.first_end_value + end * device.section_size() + at[1] + Index(device.n_a) * at[2]] =
+              centre;
         }
     });
 }

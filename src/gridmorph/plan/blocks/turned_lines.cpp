@@ -62,10 +62,10 @@ void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLay
                         Stage& stage) {
   kernels::Chain const& device = stage.lines.chains[number];
   auto& ends = stage.lines.end_positions;
-  ends.resize(std::size_t(stage.lines.n_end_values));
+  ends.resize(stage.lines.n_end_values);
   for (int end = 0; end < 2; ++end)
     for_end_nodes(context, chain, layout, 0, end, [&](Index3 const& at, Vec3 const& x) {
-      ends[std::size_t(device.first_end_value + end * device.section_size() + at[1] + Index(device.n_a) * at[2])] = x;
+      ends[device.first_end_value + end * device.section_size() + at[1] + Index(device.n_a) * at[2]] = x;
     });
   stage.lines.end_pivots.insert(stage.lines.end_pivots.end(), ends.begin() + Index(stage.lines.end_pivots.size()),
                                 ends.end());
@@ -75,7 +75,7 @@ void add_turn_positions(PlanContext const& context, Chain const& chain, ChainLay
   for (int q = 0; q < 4; ++q) {
     Index const first = stage.sides.sides[device.first_side + q].first;
     for_end_nodes(context, chain, layout, 1 + q / 2, q % 2, [&](Index3 const& at, Vec3 const& x) {
-      sides[std::size_t(first + at[0] + Index(device.n_s) * at[q < 2 ? 2 : 1])] = x;
+      sides[first + at[0] + Index(device.n_s) * at[q < 2 ? 2 : 1]] = x;
     });
   }
 }
@@ -84,7 +84,7 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
                           Stage& stage) {
   kernels::Chain const& device = stage.lines.chains[number];
   Lattice const& lattice = context.topology.lattice;
-  std::vector<std::pair<std::int32_t, std::int32_t>> roots(std::size_t(device.section_size()), {-1, -1});
+  std::vector<std::pair<std::int32_t, std::int32_t>> roots(device.section_size(), {-1, -1});
   for_end_pieces(layout, 0, 0, [&](int ps, int pa, int pb) {
     PlacedBox const box = placed_box(context, chain, layout, ps, pa, pb);
     for (int category = 0; category < 9; ++category) {
@@ -95,8 +95,8 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
       for (int q = 0; q < rows->n_q; ++q)
         for (int p = 0; p < rows->n_p; ++p) {
           Index3 const at = box.position(node_at(*rows, p, q));
-          roots[std::size_t(at[1] + Index(device.n_a) * at[2])] = {
-              context.roots->of_slot(rows->slot + p + rows->slot_q * q), matrix};
+          roots[at[1] + Index(device.n_a) * at[2]] = {context.roots->of_slot(rows->slot + p + rows->slot_q * q),
+                                                      matrix};
         }
     }
   });
@@ -110,7 +110,7 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
     for (int b = 0; b < tube.n_b; ++b)
       for (int a = 0; a < tube.n_a; ++a) {
         Index const at = tube.a_begin + a + Index(device.n_a) * (tube.b_begin + b);
-        auto const [root, matrix] = roots[std::size_t(at)];
+        auto const [root, matrix] = roots[at];
         Index const node = segment.first + a * segment.stride_a + b * segment.stride_b;
         int const steps = steps_to_resolved(segment, node, x, context.roots->resolved_arm());
         Vec3 const edge = x[node + steps * segment.stride_s] - x[node];
@@ -138,7 +138,7 @@ void leave_out_outer_edges_at_rest(WallRoots const& roots, Stage& stage) {
   for (kernels::Chain& chain : chains)
     if (chain.turn == kernels::TurnLaw::near_field) chain.turned_ends = 1;
   for (kernels::NearFieldLine const& line : stage.near_field) {
-    if (roots.nodes()[std::size_t(line.root)].turn == 0) continue;
+    if (roots.nodes()[line.root].turn == 0) continue;
     auto const after =
         std::upper_bound(chains.begin(), chains.end(), line.lower,
                          [](Index end, kernels::Chain const& chain) { return end < chain.first_end_value; });

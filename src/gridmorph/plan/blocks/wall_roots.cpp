@@ -20,7 +20,7 @@ RootFace::RootFace(PlanContext const& context, FaceSide const& face)
   for (int d = 0; d < 3; ++d)
     if (d != axis) along[n++] = d;
   nodes = closed_nodes(lattice, face.entity);
-  of_node.resize(std::size_t(nodes.size()));
+  of_node.resize(nodes.size());
   Index3 const place = lattice.position(face.entity);
   for (int dq = -1; dq <= 1; ++dq)
     for (int dp = -1; dp <= 1; ++dp) {
@@ -113,7 +113,7 @@ void WallRoots::mark(Known& known) const {
         which[face.along[1]] += dq;
         int const c = lattice.class_of(lattice.entity_of_piece(face.piece, which));
         known.turns[c] = 1;
-        if (!centre_.empty()) known.body[c] = body_[std::size_t(of_slot(face(0, 0).slot))];
+        if (!centre_.empty()) known.body[c] = body_[of_slot(face(0, 0).slot)];
       }
 }
 
@@ -141,10 +141,10 @@ TurningRoots WallRoots::turning_roots() const {
   for (std::size_t b = 0; b < n_bodies; ++b) {
     if (one_frame[b] == 0) of_body[b].clear();
     double area = 0;
-    for (std::int32_t const r : of_body[b]) area += norm(fan_normal(nodes_[std::size_t(r)].around));
+    for (std::int32_t const r : of_body[b]) area += norm(fan_normal(nodes_[r].around));
     for (std::size_t k = 0; k < of_body[b].size(); ++k) {
       out.root.push_back(of_body[b][k]);
-      out.weight.push_back(area > 0 ? norm(fan_normal(nodes_[std::size_t(of_body[b][k])].around)) / area : 0);
+      out.weight.push_back(area > 0 ? norm(fan_normal(nodes_[of_body[b][k]].around)) / area : 0);
       if ((k + 1) % chunk_size == 0 || k + 1 == of_body[b].size()) out.first.push_back(Index(out.root.size()));
     }
     out.first_chunk.push_back(Index(out.first.size()) - 1);
@@ -161,7 +161,7 @@ void WallRoots::for_nodes(Visit const& visit) const {
 }
 
 void WallRoots::find_centres() {
-  centre_.assign(std::size_t(n_bodies_), {});
+  centre_.assign(n_bodies_, {});
   std::vector<kernels::Box> box(centre_.size());
   std::vector<double> area(centre_.size(), 0);
   std::vector<char> seen(nodes_.size(), 0);
@@ -187,7 +187,7 @@ std::vector<WallRoots::BodySample> WallRoots::sample_bodies(Index most) const {
   Index passed = 0;
   for_nodes([&](RootFace const& face, RootFace::Node const& node, Index n) {
     if (passed++ % step != 0) return;
-    BodySample& sample = samples[std::size_t(body_[std::size_t(of_slot(node.slot))])];
+    BodySample& sample = samples[body_[of_slot(node.slot)]];
     sample.places.push_back(context_.mesh.coordinates[n]);
     sample.patches.push_back(face.patch);
   });
@@ -195,7 +195,7 @@ std::vector<WallRoots::BodySample> WallRoots::sample_bodies(Index most) const {
 }
 
 void WallRoots::add_line(std::int32_t root, Vec3 const& line) {
-  RootNode& node = nodes_[std::size_t(root)];
+  RootNode& node = nodes_[root];
   bool const same = node.n_lines == 1 && distance(node.line, line) < 1e-6;
   if (same) return;
   node.line = node.n_lines++ == 0 ? line : Vec3{};
@@ -214,10 +214,10 @@ void WallRoots::join_coincident() {
   std::vector<std::int32_t> const first = sets.roots();
   std::vector<std::vector<kernels::RootNeighbour>> together(nodes_.size());
   for (std::size_t r = 0; r < nodes_.size(); ++r) {
-    auto& list = together[std::size_t(first[r])];
+    auto& list = together[first[r]];
     list.insert(list.end(), nodes_[r].around.begin(), nodes_[r].around.end());
   }
-  for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[std::size_t(first[r])];
+  for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].around = together[first[r]];
 }
 
 double WallRoots::largest_coordinate() const {
@@ -245,28 +245,28 @@ void WallRoots::turn_as_resolved(CoordinatePrecision const& precision, double ro
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> ways;
   // Turns are vectors in the frame of a slot, so that ways end where that changes.
   auto const for_neighbours = [&](std::int32_t r, auto const& visit) {
-    for (kernels::RootNeighbour const& k : nodes_[std::size_t(r)].around)
+    for (kernels::RootNeighbour const& k : nodes_[r].around)
       if (k.matrix < 0) visit(of_slot_.at(k.slot), norm(k.arm));
   };
   for (std::int32_t r = 0; r < std::int32_t(nodes_.size()); ++r)
-    if (!resolved[std::size_t(r)])
+    if (!resolved[r])
       for_neighbours(r, [&](std::int32_t other, double length) {
-        if (resolved[std::size_t(other)]) ways.emplace(length, r, other);
+        if (resolved[other]) ways.emplace(length, r, other);
       });
   while (!ways.empty()) {
     auto const [length, r, from] = ways.top();
     ways.pop();
-    if (source[std::size_t(r)] >= 0) continue;
-    source[std::size_t(r)] = from;
+    if (source[r] >= 0) continue;
+    source[r] = from;
     // Named one by one: clang below 16 captures no bindings.
     for_neighbours(r, [&, length = length, from = from](std::int32_t other, double step) {
-      if (!resolved[std::size_t(other)] && source[std::size_t(other)] < 0) ways.emplace(length + step, other, from);
+      if (!resolved[other] && source[other] < 0) ways.emplace(length + step, other, from);
     });
   }
   for (std::size_t r = 0; r < nodes_.size(); ++r) {
     if (source[r] < 0) continue;
-    nodes_[r].around = nodes_[std::size_t(source[r])].around;
-    nodes_[r].centre = nodes_[std::size_t(source[r])].slot;
+    nodes_[r].around = nodes_[source[r]].around;
+    nodes_[r].centre = nodes_[source[r]].slot;
   }
 }
 

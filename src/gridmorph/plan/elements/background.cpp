@@ -48,10 +48,10 @@ class LatticeMesh {
     return is != ChartedDomain::Side::open && (is != ChartedDomain::Side::stands || wrap_.reaches[a][which]);
   }
   static std::string side_family(int axis, int side) { return "side " + std::string(face_name(axis, side)); }
-  [[nodiscard]] int cut(std::size_t axis, int slab) const { return lattice_.cut[axis][std::size_t(slab)]; }
+  [[nodiscard]] int cut(std::size_t axis, int slab) const { return lattice_.cut[axis][slab]; }
 
   void add_zone(Index3 const& s) {
-    int& zone = lattice_.zone[std::size_t(lattice_.box(s))];
+    int& zone = lattice_.zone[lattice_.box(s)];
     if (zone < 0) return;
     Index3 extent{};
     for (std::size_t a = 0; a < 3; ++a) extent[a] = cut(a, s[a] + 1) - cut(a, s[a]) + 1;
@@ -59,12 +59,12 @@ class LatticeMesh {
   }
 
   void add_faces(Index3 const& s) {
-    int const zone = lattice_.zone[std::size_t(lattice_.box(s))];
+    int const zone = lattice_.zone[lattice_.box(s)];
     if (zone < 0) return;
     for (int axis = 0; axis < 3; ++axis)
       for (int const side : {0, 1}) {
         auto const a = std::size_t(axis);
-        IndexRange range{{0, 0, 0}, mesh_.zones[std::size_t(zone)].extent};
+        IndexRange range{{0, 0, 0}, mesh_.zones[zone].extent};
         (side == 0 ? range.end[a] : range.begin[a]) = side == 0 ? 1 : range.end[a] - 1;
         Index3 beyond = s;
         beyond[a] += 2 * side - 1;
@@ -77,7 +77,7 @@ class LatticeMesh {
             add_patch("outer", "BCFarfield", PatchKind::farfield, zone, axis, side, range);
           continue;
         }
-        int const donor = lattice_.zone[std::size_t(lattice_.box(beyond))];
+        int const donor = lattice_.zone[lattice_.box(beyond)];
         if (donor < 0)
           add_patch("wrap", "BCWall", PatchKind::wall, zone, axis, side, range);
         else
@@ -92,24 +92,21 @@ class LatticeMesh {
 
   void add_interface(int zone, int donor, int axis, int side, IndexRange const& range) {
     Interface1to1 face;
-    face.name = "to " + mesh_.zones[std::size_t(donor)].name;
+    face.name = "to " + mesh_.zones[donor].name;
     face.zone = zone;
     face.donor_zone = donor;
     face.range = range;
     face.to_donor.own_origin = range.begin;
     face.to_donor.donor_origin = range.begin;
-    face.to_donor.donor_origin[std::size_t(axis)] =
-        side == 0 ? mesh_.zones[std::size_t(donor)].extent[std::size_t(axis)] - 1 : 0;
+    face.to_donor.donor_origin[axis] = side == 0 ? mesh_.zones[donor].extent[axis] - 1 : 0;
     mesh_.interfaces.push_back(std::move(face));
   }
 
   void set_coordinates(Index3 const& s) {
-    int const number = lattice_.zone[std::size_t(lattice_.box(s))];
+    int const number = lattice_.zone[lattice_.box(s)];
     if (number < 0) return;
-    Zone const& zone = mesh_.zones[std::size_t(number)];
-    auto plane = [&](std::size_t axis, int node) {
-      return lattice_.planes[axis][std::size_t(cut(axis, s[axis]) + node)];
-    };
+    Zone const& zone = mesh_.zones[number];
+    auto plane = [&](std::size_t axis, int node) { return lattice_.planes[axis][cut(axis, s[axis]) + node]; };
     for (int k = 0; k < zone.extent[2]; ++k)
       for (int j = 0; j < zone.extent[1]; ++j)
         for (int i = 0; i < zone.extent[0]; ++i)
@@ -125,7 +122,7 @@ class LatticeMesh {
 /// How nodes slide on a side of a chart at a place there.
 SlipRule sliding(Chart const& chart, int axis, LatticeBox const& box, int side) {
   SlipRule rule;
-  bool const limited = bool(chart.limits[std::size_t(axis)]), turned = chart.frame == Chart::Frame::cylindrical,
+  bool const limited = bool(chart.limits[axis]), turned = chart.frame == Chart::Frame::cylindrical,
              disc = chart.frame == Chart::Frame::disc;
   auto const a = std::size_t(axis);
   double const at = side == 0 ? box.low[a] : box.high[a];
@@ -183,7 +180,7 @@ FinePlanes refine(std::vector<double> const& coarse, std::array<bool, 2> const& 
   out.planes.push_back(coarse.front());
   out.coarse.push_back(0);
   int const n = int(coarse.size()) - 1;
-  auto size = [&](int i) { return coarse[std::size_t(i) + 1] - coarse[std::size_t(i)]; };
+  auto size = [&](int i) { return coarse[i + 1] - coarse[i]; };
   // Outermost intervals, and those between walls far apart.
   auto stretched = [&](int i) {
     return n > 1 && ((i == 0 && !reaches[0]) || (i == n - 1 && !reaches[1]) || size(i) > 1.6 * spacing);
@@ -191,8 +188,7 @@ FinePlanes refine(std::vector<double> const& coarse, std::array<bool, 2> const& 
   for (int i = 0; i < n; ++i) {
     double const low = stretched(i) && i > 0 ? size(i - 1) / cells : 0;
     double const high = stretched(i) && i < n - 1 ? size(i + 1) / cells : 0;
-    std::vector<double> const at =
-        nodes_between(coarse[std::size_t(i)], coarse[std::size_t(i) + 1], low, high, cells, growth);
+    std::vector<double> const at = nodes_between(coarse[i], coarse[i + 1], low, high, cells, growth);
     out.planes.insert(out.planes.end(), at.begin() + 1, at.end());
     out.coarse.push_back(int(out.planes.size()) - 1);
   }
@@ -234,19 +230,15 @@ Background make_background(Wrap const& wrap, int cells, double growth) {
     lattice.planes[a] = fine.planes;
     for (int p = 0; p <= wrap.cells(axis); ++p)
       if (p == 0 || p == wrap.cells(axis) || !alike(wrap, axis, p)) {
-        lattice.cut[a].push_back(fine.coarse[std::size_t(p)]);
+        lattice.cut[a].push_back(fine.coarse[p]);
         first_cell[a].push_back(p);
       }
-    for (int s = 0; s < lattice.slabs(axis); ++s)
-      lattice.slab[a].resize(std::size_t(lattice.cut[a][std::size_t(s) + 1]), s);
+    for (int s = 0; s < lattice.slabs(axis); ++s) lattice.slab[a].resize(lattice.cut[a][s + 1], s);
   }
   for (int k = 0; k < lattice.slabs(2); ++k)
     for (int j = 0; j < lattice.slabs(1); ++j)
       for (int i = 0; i < lattice.slabs(0); ++i)
-        lattice.zone.push_back(wrap.is_inside({first_cell[0][std::size_t(i)], first_cell[1][std::size_t(j)],
-                                               first_cell[2][std::size_t(k)]})
-                                   ? -1
-                                   : 0);
+        lattice.zone.push_back(wrap.is_inside({first_cell[0][i], first_cell[1][j], first_cell[2][k]}) ? -1 : 0);
   lattice.chart = wrap.domain.chart;
   LatticeMesh blocks(lattice, wrap);
   LatticeBox box;

@@ -33,7 +33,7 @@ struct FineLattice {
   std::array<std::vector<int>, 3> slab;       ///< per cell: which interval between cuts
   std::vector<int> zone;                      ///< per box of slabs, i fastest; -1: in the wrap
 
-  [[nodiscard]] int slabs(int axis) const { return int(cut[std::size_t(axis)].size()) - 1; }
+  [[nodiscard]] int slabs(int axis) const { return int(cut[axis].size()) - 1; }
   [[nodiscard]] int box(Index3 const& s) const { return s[0] + slabs(0) * (s[1] + slabs(1) * s[2]); }
 };
 

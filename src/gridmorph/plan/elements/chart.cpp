@@ -16,14 +16,14 @@ std::pair<double, double> ends_at(Chart::Limits const& limits, Point const& q) {
   std::array<double, 2> t{};
   for (std::size_t a = 0; a < 2; ++a) {
     if (limits.over[a] < 0 || limits.knots[a] < 2) continue;
-    double const s = (q[std::size_t(limits.over[a])] - limits.first[a]) / limits.step[a];
+    double const s = (q[limits.over[a]] - limits.first[a]) / limits.step[a];
     knot[a] = std::clamp(int(std::floor(s)), 0, limits.knots[a] - 2);
     t[a] = std::clamp(s - knot[a], 0.0, 1.0);
   }
   auto value = [&](std::vector<double> const& table) {
     auto at = [&](int i, int j) {
-      return table[std::size_t(std::min(knot[0] + i, limits.knots[0] - 1) +
-                               limits.knots[0] * std::min(knot[1] + j, limits.knots[1] - 1))];
+      return table[std::min(knot[0] + i, limits.knots[0] - 1) +
+                   limits.knots[0] * std::min(knot[1] + j, limits.knots[1] - 1)];
     };
     return (1 - t[1]) * ((1 - t[0]) * at(0, 0) + t[0] * at(1, 0)) + t[1] * ((1 - t[0]) * at(0, 1) + t[0] * at(1, 1));
   };
@@ -53,9 +53,9 @@ Vec3 Chart::operator()(Vec3 const& place) const {
       q = {radius * square(x / radius, y / radius), radius * square(y / radius, x / radius), along};
   }
   for (int const c : order)
-    if (auto const& l = limits[std::size_t(c)]) {
+    if (auto const& l = limits[c]) {
       auto const [low, high] = ends_at(*l, q);
-      q[std::size_t(c)] = l->width * (q[std::size_t(c)] - low) / (high - low);
+      q[c] = l->width * (q[c] - low) / (high - low);
     }
   return {q[0], q[1], q[2]};
 }
@@ -64,9 +64,9 @@ Vec3 Chart::place(Vec3 const& coordinates) const {
   Point const chart{coordinates.x, coordinates.y, coordinates.z};
   Point q = chart;
   for (int const c : order)
-    if (auto const& l = limits[std::size_t(c)]) {
+    if (auto const& l = limits[c]) {
       auto const [low, high] = ends_at(*l, chart);
-      q[std::size_t(c)] = low + (high - low) * (chart[std::size_t(c)] / l->width);
+      q[c] = low + (high - low) * (chart[c] / l->width);
     }
   if (frame == Frame::straight) return {q[0], q[1], q[2]};
   if (frame == Frame::disc) {

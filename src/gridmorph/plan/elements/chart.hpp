@@ -73,9 +73,7 @@ struct ChartedDomain {
   LatticeBox box;
   std::array<std::array<Side, 2>, 3> side{};  ///< of each coordinate, low and high
 
-  [[nodiscard]] bool ends(int coordinate, int which) const {
-    return side[std::size_t(coordinate)][std::size_t(which)] != Side::open;
-  }
+  [[nodiscard]] bool ends(int coordinate, int which) const { return side[coordinate][which] != Side::open; }
 };
 
 }  // namespace gridmorph

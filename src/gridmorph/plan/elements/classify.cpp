@@ -17,16 +17,16 @@ template <class AnyWrap>
 Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap const& wrap) {
   Classification out;
   std::vector<std::uint8_t>& inside = out.inside;
-  inside.resize(std::size_t(mesh.n_nodes()));
-  out.near.assign(std::size_t(mesh.n_nodes()), 0);
-  out.element.resize(std::size_t(mesh.n_elements()));
+  inside.resize(mesh.n_nodes());
+  out.near.assign(mesh.n_nodes(), 0);
+  out.element.resize(mesh.n_elements());
   Coordinates const coordinates = wrap.domain.chart.mapped(host, mesh.coordinates);
   detail::for_all(host, "gridmorph::classify::nodes", mesh.n_nodes(),
-                  [&](Index n) { inside[std::size_t(n)] = std::uint8_t(wrap.holds(coordinates[n])); });
+                  [&](Index n) { inside[n] = std::uint8_t(wrap.holds(coordinates[n])); });
   detail::for_all(host, "gridmorph::classify::elements", mesh.n_elements(), [&](Index e) {
     auto const corners = mesh.elements.corners(e);
-    Region& region = out.element[std::size_t(e)];
-    if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return inside[std::size_t(n)] != 0; })) {
+    Region& region = out.element[e];
+    if (std::all_of(corners.begin(), corners.end(), [&](Index32 n) { return inside[n] != 0; })) {
       region = Region::near;
     } else {
       LatticeBox box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
@@ -43,7 +43,7 @@ Classification classify(HostInstance const& host, Mesh const& mesh, AnyWrap cons
     if (region == Region::far) return;
     // Several elements may mark a node: all of them with the same value.
     for (Index32 const n : mesh.elements.nodes[e])
-      std::atomic_ref<std::uint8_t>(out.near[std::size_t(n)]).store(1, std::memory_order_relaxed);
+      std::atomic_ref<std::uint8_t>(out.near[n]).store(1, std::memory_order_relaxed);
   });
   out.count();
   return out;

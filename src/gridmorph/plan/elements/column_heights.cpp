@@ -14,12 +14,12 @@ std::vector<double> gaps_ahead(Coordinates const& coordinates, Columns const& co
   std::vector<double> gap(columns.height.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
     Index32 const root = columns.root[k];
-    double const d = from_other.distance[std::size_t(root)];
+    double const d = from_other.distance[root];
     if (!std::isfinite(d)) continue;
     Vec3 const along = coordinates[columns.node[k]] - coordinates[root];
-    Vec3 const way = coordinates[from_other.source[std::size_t(root)]] - coordinates[root];
+    Vec3 const way = coordinates[from_other.source[root]] - coordinates[root];
     // Nodes of a column are in order: the highest has the last word.
-    gap[std::size_t(root)] = dot(way, along) > 0.5 * d * norm(along) ? d : std::numeric_limits<double>::infinity();
+    gap[root] = dot(way, along) > 0.5 * d * norm(along) ? d : std::numeric_limits<double>::infinity();
   }
   return gap;
 }
@@ -39,15 +39,15 @@ std::vector<double> smooth(NodeGraph const& graph, std::vector<double> const& wh
   std::vector<double> next = end;
   for (int s = 0; s < sweeps_of_least + sweeps_of_mean; ++s) {
     for (Index32 const n : walls) {
-      double sum = end[std::size_t(n)], least = sum;
+      double sum = end[n], least = sum;
       int count = 1;
       for (Index32 const m : graph.neighbours[n])
-        if (whole[std::size_t(m)] > 0) {
-          sum += end[std::size_t(m)];
-          least = std::min(least, end[std::size_t(m)]);
+        if (whole[m] > 0) {
+          sum += end[m];
+          least = std::min(least, end[m]);
           ++count;
         }
-      next[std::size_t(n)] = s < sweeps_of_least ? least : sum / count;
+      next[n] = s < sweeps_of_least ? least : sum / count;
     }
     std::swap(end, next);
   }

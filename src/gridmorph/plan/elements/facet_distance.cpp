@@ -38,11 +38,11 @@ double FacetDistance::squared(Triangle const& t, Vec3 const& p) {
 double FacetDistance::operator()(Vec3 const& p, int& start) const {
   if (empty()) return std::numeric_limits<double>::infinity();
   if (start < 0 || std::size_t(start) >= triangles_.size()) start = 0;
-  double best = squared(triangles_[std::size_t(start)], p);
+  double best = squared(triangles_[start], p);
   boxes_.for_each_nearer(
       p,
       [&](int t) {
-        if (double const d = squared(triangles_[std::size_t(t)], p); d < best) {
+        if (double const d = squared(triangles_[t], p); d < best) {
           best = d;
           start = t;
         }

@@ -23,13 +23,13 @@ class Boundary {
  public:
   Boundary(HostInstance const& host, Mesh const& mesh, BoundaryFaces const& faces, std::span<std::uint8_t const> moving)
       : host_(host), mesh_(mesh), faces_(faces), moving_(moving), dimension_(std::size_t(mesh.dimension)) {
-    std::vector<Index32> number(std::size_t(mesh.n_nodes()), -1);
+    std::vector<Index32> number(mesh.n_nodes(), -1);
     std::vector<Index32> corners;
     for (Index f = 0; f < faces.size(); ++f) {
       auto const face = faces.nodes[f];
       corners.clear();
       for (Index32 const n : face) {
-        Index32& k = number[std::size_t(n)];
+        Index32& k = number[n];
         if (k < 0) {
           k = Index32(nodes_.size());
           nodes_.push_back(n);
@@ -58,11 +58,11 @@ class Boundary {
     for (Index f = 0; f < faces_.size(); ++f) {
       int const side = side_of(q, f, box);
       out.side_of_face.push_back(std::int8_t(side));
-      double const area = area_[std::size_t(f)];
+      double const area = area_[f];
       if (side >= 0) {
-        on[std::size_t(side / 2)][std::size_t(side % 2)] += area;
+        on[side / 2][side % 2] += area;
         on_sides += area;
-      } else if (moving_[std::size_t(f)] == 0) {
+      } else if (moving_[f] == 0) {
         elsewhere += area;
       }
     }
@@ -83,7 +83,7 @@ class Boundary {
     for (std::size_t k = 1; k < dimension_; ++k) {
       auto limits = envelope(chart, k);
       if (!limits) return {};
-      chart.limits[std::size_t(chart.order[k])] = std::move(*limits);
+      chart.limits[chart.order[k]] = std::move(*limits);
     }
     return chart;
   }
@@ -192,7 +192,7 @@ class Boundary {
   [[nodiscard]] std::vector<Point> places(Chart const& chart) const {
     std::vector<Point> q(nodes_.size());
     for_all(host_, "gridmorph::fit_domain", Index(nodes_.size()),
-            [&](Index k) { q[std::size_t(k)] = array_of(chart(mesh_.coordinates[nodes_[std::size_t(k)]])); });
+            [&](Index k) { q[k] = array_of(chart(mesh_.coordinates[nodes_[k]])); });
     return q;
   }
   static LatticeBox box_of(std::vector<Point> const& q) {
@@ -211,7 +211,7 @@ class Boundary {
       double const slack = 0.02 * (box.high[c] - box.low[c]);
       for (int const s : {0, 1}) {
         auto on = [&](Index32 n) {
-          double const x = q[std::size_t(n)][c];
+          double const x = q[n][c];
           return s == 0 ? x < box.low[c] + slack : x > box.high[c] - slack;
         };
         auto const nodes = corners_[face];
@@ -241,11 +241,9 @@ class Boundary {
     for (Index f = 0; f < faces_.size(); ++f) {
       auto const face = corners_[f];
       if (k == 1)
-        for (std::size_t n = 0; n < face.size(); ++n)
-          span(limits, q[std::size_t(face[n])], q[std::size_t(face[(n + 1) % face.size()])], c);
+        for (std::size_t n = 0; n < face.size(); ++n) span(limits, q[face[n]], q[face[(n + 1) % face.size()]], c);
       else
-        for (std::size_t n = 1; n + 1 < face.size(); ++n)
-          span(limits, q[std::size_t(face[0])], q[std::size_t(face[n])], q[std::size_t(face[n + 1])], c);
+        for (std::size_t n = 1; n + 1 < face.size(); ++n) span(limits, q[face[0]], q[face[n]], q[face[n + 1]], c);
     }
     if (!fill(limits) || !widen(limits) || !fill(limits)) return {};
     double least = unset, most = 0, sum = 0;

@@ -21,7 +21,7 @@ void polyhedron_weights(Mesh const& mesh, Location const& where, std::span<Index
   std::fill(weight.begin(), weight.end(), of_all / double(corners.size()));
   auto const add = [&](Index32 node, double w) {
     auto const at = std::find(corners.begin(), corners.end(), node);
-    if (at != corners.end()) weight[std::size_t(at - corners.begin())] += w;
+    if (at != corners.end()) weight[at - corners.begin()] += w;
   };
   Index part = where.part;
   for (Index f = polyhedra.first_face[number]; f < polyhedra.first_face[number + 1]; ++f) {
@@ -32,15 +32,15 @@ void polyhedron_weights(Mesh const& mesh, Location const& where, std::span<Index
       continue;
     }
     for (Index32 const node : face) add(node, of_face / double(n));
-    add(face[std::size_t(part)], of_begin);
-    add(face[std::size_t((part + 1) % n)], of_end);
+    add(face[part], of_begin);
+    add(face[(part + 1) % n], of_end);
     return;
   }
 }
 
 void fill_weights(Mesh const& mesh, Location const& where, std::vector<double>& weight) {
   auto const corners = mesh.elements.corners(where.element);
-  ElementType const type = mesh.elements.type[std::size_t(where.element)];
+  ElementType const type = mesh.elements.type[where.element];
   weight.resize(corners.size());
   if (type == ElementType::polyhedron) return polyhedron_weights(mesh, where, corners, weight);
   kernels::ElementWeights const w = element_weights(type, where.local);
@@ -53,7 +53,7 @@ template <class Visit>
 void for_each_item(Mesh const& mesh, Location const& where, Visit const& visit) {
   constexpr double negligible = 1e-9;
   auto const corners = mesh.elements.corners(where.element);
-  ElementType const type = mesh.elements.type[std::size_t(where.element)];
+  ElementType const type = mesh.elements.type[where.element];
   kernels::ElementWeights some;
   std::vector<double> many;
   double* weight = some.of;
@@ -114,15 +114,15 @@ InterpolationOperator interpolation_rows(HostInstance const& host, Mesh const& m
   Index const n_rows = Index(locations.size());
   detail::for_all(host, "gridmorph::interpolation_rows::count", n_rows, [&](Index const n) {
     Index count = 0;
-    for_each_item(mesh, locations[std::size_t(n)], [&](Index32, double) { ++count; });
-    rows.first[std::size_t(n) + 1] = count;
+    for_each_item(mesh, locations[n], [&](Index32, double) { ++count; });
+    rows.first[n + 1] = count;
   });
   for (std::size_t n = 0; n < locations.size(); ++n) rows.first[n + 1] += rows.first[n];
-  rows.item.resize(std::size_t(rows.first.back()));
-  rows.weight.resize(std::size_t(rows.first.back()));
+  rows.item.resize(rows.first.back());
+  rows.weight.resize(rows.first.back());
   detail::for_all(host, "gridmorph::interpolation_rows::fill", n_rows, [&](Index const n) {
-    auto at = std::size_t(rows.first[std::size_t(n)]);
-    for_each_item(mesh, locations[std::size_t(n)], [&](Index32 node, double w) {
+    auto at = std::size_t(rows.first[n]);
+    for_each_item(mesh, locations[n], [&](Index32 node, double w) {
       rows.item[at] = node;
       rows.weight[at++] = float(w);
     });

@@ -30,11 +30,11 @@ class Locator {
     std::array<double, 3> x{q.x, q.y, q.z};
     if (dimension_ == 2) x[2] = lattice_.planes[2].front();
     Index3 slab{};
-    for (std::size_t a = 0; a < 3; ++a) slab[a] = lattice_.slab[a][std::size_t(cell(a, x[a]))];
-    int zone = lattice_.zone[std::size_t(lattice_.box(slab))];
+    for (std::size_t a = 0; a < 3; ++a) slab[a] = lattice_.slab[a][cell(a, x[a])];
+    int zone = lattice_.zone[lattice_.box(slab)];
     if (zone < 0) {
       slab = nearest(x);
-      zone = lattice_.zone[std::size_t(lattice_.box(slab))];
+      zone = lattice_.zone[lattice_.box(slab)];
     }
     Place place;
     place.zone = zone;
@@ -43,9 +43,9 @@ class Locator {
       auto const [low, high] = limits(a, slab[a]);
       double const in = std::clamp(x[a], low, high);
       squares += (x[a] - in) * (x[a] - in);
-      int const first = lattice_.cut[a][std::size_t(slab[a])], end = lattice_.cut[a][std::size_t(slab[a]) + 1];
+      int const first = lattice_.cut[a][slab[a]], end = lattice_.cut[a][std::size_t(slab[a]) + 1];
       int const c = std::clamp(cell(a, in), first, end - 1);
-      double const from = lattice_.planes[a][std::size_t(c)], to = lattice_.planes[a][std::size_t(c) + 1];
+      double const from = lattice_.planes[a][c], to = lattice_.planes[a][c + 1];
       place.node[a] = c - first;
       place.fraction[a] = std::clamp((in - from) / (to - from), 0.0, 1.0);
     }
@@ -59,7 +59,7 @@ class Locator {
     return int(std::upper_bound(p.begin() + 1, p.end() - 1, x) - p.begin()) - 1;
   }
   [[nodiscard]] std::pair<double, double> limits(std::size_t axis, int slab) const {
-    auto plane = [&](int s) { return lattice_.planes[axis][std::size_t(lattice_.cut[axis][std::size_t(s)])]; };
+    auto plane = [&](int s) { return lattice_.planes[axis][lattice_.cut[axis][s]]; };
     return {plane(slab), plane(slab + 1)};
   }
   /// The box of slabs outside the wrap nearest to a point, the first of equals.
@@ -70,7 +70,7 @@ class Locator {
       for (int j = 0; j < lattice_.slabs(1); ++j)
         for (int i = 0; i < lattice_.slabs(0); ++i) {
           Index3 const s{i, j, k};
-          if (lattice_.zone[std::size_t(lattice_.box(s))] < 0) continue;
+          if (lattice_.zone[lattice_.box(s)] < 0) continue;
           double squares = 0;
           for (std::size_t a = 0; a < 3; ++a) {
             auto const [low, high] = limits(a, s[a]);
@@ -107,8 +107,8 @@ Weights weights(Zone const& zone, Place const& place, int dimension) {
       node[a] += upper;
     }
     if (w == 0) continue;
-    out.node[std::size_t(out.size)] = Index32(zone.node(node));
-    out.weight[std::size_t(out.size++)] = w;
+    out.node[out.size] = Index32(zone.node(node));
+    out.weight[out.size++] = w;
   }
   return out;
 }
@@ -124,32 +124,31 @@ FarRows lattice_rows(HostInstance const& host, Background const& background, Coo
   double const round_off = 1e-12 * extent_of(host, background.mesh.coordinates).size();
   FarRows out;
   out.rows.target.assign(nodes.begin(), nodes.end());
-  out.rows.first.assign(std::size_t(n) + 1, 0);
+  out.rows.first.assign(n + 1, 0);
   auto row = [&](Index r) {
-    Place const place = locate(coordinates[nodes[std::size_t(r)]]);
-    return std::pair(weights(background.mesh.zones[std::size_t(place.zone)], place, background.dimension),
-                     place.distance);
+    Place const place = locate(coordinates[nodes[r]]);
+    return std::pair(weights(background.mesh.zones[place.zone], place, background.dimension), place.distance);
   };
   // Twice the same search: cheaper than keeping what it found.
-  std::vector<float> distance(std::size_t(n), 0);
+  std::vector<float> distance(n, 0);
   detail::for_all(host, "gridmorph::lattice_rows::count", n, [&](Index r) {
     auto const [w, d] = row(r);
-    out.rows.first[std::size_t(r) + 1] = w.size;
-    distance[std::size_t(r)] = float(d);
+    out.rows.first[r + 1] = w.size;
+    distance[r] = float(d);
   });
   for (Index r = 0; r < n; ++r) {
-    out.rows.first[std::size_t(r) + 1] += out.rows.first[std::size_t(r)];
-    if (distance[std::size_t(r)] > round_off) ++out.n_outside;
-    out.largest_distance = std::max(out.largest_distance, double(distance[std::size_t(r)]));
+    out.rows.first[r + 1] += out.rows.first[r];
+    if (distance[r] > round_off) ++out.n_outside;
+    out.largest_distance = std::max(out.largest_distance, double(distance[r]));
   }
-  out.rows.item.resize(std::size_t(out.rows.first.back()));
+  out.rows.item.resize(out.rows.first.back());
   out.rows.weight.resize(out.rows.item.size());
   detail::for_all(host, "gridmorph::lattice_rows::fill", n, [&](Index r) {
     Weights const w = row(r).first;
-    auto const first = std::size_t(out.rows.first[std::size_t(r)]);
+    auto const first = std::size_t(out.rows.first[r]);
     for (int k = 0; k < w.size; ++k) {
-      out.rows.item[first + std::size_t(k)] = w.node[std::size_t(k)];
-      out.rows.weight[first + std::size_t(k)] = float(w.weight[std::size_t(k)]);
+      out.rows.item[first + std::size_t(k)] = w.node[k];
+      out.rows.weight[first + std::size_t(k)] = float(w.weight[k]);
     }
   });
   return out;

@@ -217,14 +217,14 @@ void fill_tree(Exec const& exec, LocatorTables<typename Exec::memory_space>& tab
   Index const n = Index(tables.element.extent(0));
   std::vector<Index> const first = levels_of(n);
   tables.groups = Kokkos::View<BoxGroup*, typename Exec::memory_space>(
-      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::groups"), std::size_t(first.back()));
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, "gridmorph::ElementLocator::groups"), first.back());
   tables.tree.groups = tables.groups.data();
   tables.tree.n_levels = int(first.size()) - 1;
-  for (int l = 0; l < tables.tree.n_levels; ++l) tables.tree.first[l] = first[std::size_t(l)];
+  for (int l = 0; l < tables.tree.n_levels; ++l) tables.tree.first[l] = first[l];
   auto const t = tables;
   for (int level = 0; level < tables.tree.n_levels; ++level) {
-    Index const begin = first[std::size_t(level)], end = first[std::size_t(level) + 1];
-    Index const below = level == 0 ? 0 : first[std::size_t(level) - 1];
+    Index const begin = first[level], end = first[level + 1];
+    Index const below = level == 0 ? 0 : first[level - 1];
     Index const n_below = level == 0 ? n : begin - below;
     Kokkos::parallel_for(
         "gridmorph::ElementLocator::boxes", Range<Exec>(exec, 0, end - begin), KOKKOS_LAMBDA(Index const g) {
@@ -344,7 +344,7 @@ LocatorTables<typename Exec::memory_space> make_tables(Exec const& exec, Mesh co
 }
 
 std::vector<Index32> all_elements(Mesh const& mesh) {
-  std::vector<Index32> all(std::size_t(mesh.n_elements()));
+  std::vector<Index32> all(mesh.n_elements());
   std::iota(all.begin(), all.end(), 0);
   return all;
 }

@@ -18,11 +18,10 @@ namespace {
 
 /// Corners of the edge, face or element amid which the further node number k of element e is.
 std::vector<Index32> corners_around(Mesh const& mesh, Index e, std::size_t k) {
-  ElementType const type = mesh.elements.type[std::size_t(e)];
+  ElementType const type = mesh.elements.type[e];
   auto const corners = mesh.elements.corners(e);
   int const edge = int(k - corners.size());
-  if (edge < n_edges(type))
-    return {corners[std::size_t(edge_corner(type, edge, 0))], corners[std::size_t(edge_corner(type, edge, 1))]};
+  if (edge < n_edges(type)) return {corners[edge_corner(type, edge, 0)], corners[edge_corner(type, edge, 1)]};
   int square = edge - n_edges(type);
   if (!is_surface(type))
     for (int f = 0; f < n_faces(type); ++f) {
@@ -57,7 +56,7 @@ class MiddleRows {
  private:
   using Use = std::array<Index32, 3>;  ///< node, element, place in the element
 
-  [[nodiscard]] Index32 owner(Index32 n) const { return graph_.representative[std::size_t(n)]; }
+  [[nodiscard]] Index32 owner(Index32 n) const { return graph_.representative[n]; }
 
   void add(std::span<Use const> uses) {
     Coordinates const& x = mesh_.coordinates;
@@ -82,7 +81,7 @@ class MiddleRows {
   void add_item(Index32 node, double weight) {
     auto const at = std::find(items_.begin(), items_.end(), node);
     if (at != items_.end()) {
-      weights_[std::size_t(at - items_.begin())] += weight;
+      weights_[at - items_.begin()] += weight;
     } else {
       items_.push_back(node);
       weights_.push_back(weight);
@@ -202,19 +201,19 @@ void UnstructuredPlanner::take_boundary() {
     // A node that several surfaces hold is left alone as far as the least exact of them allows.
     double tolerance = 0;
     for (Index s = b.given_slip.first[k]; s < b.given_slip.first[k + 1]; ++s)
-      tolerance = std::max(tolerance, given_tolerance(plan.surfaces[std::size_t(b.given_slip.surface[std::size_t(s)])],
-                                                      b.motion->boundary().size()));
+      tolerance =
+          std::max(tolerance, given_tolerance(plan.surfaces[b.given_slip.surface[s]], b.motion->boundary().size()));
     plan.given_tolerance.push_back(tolerance);
   }
   plan.images = b.images;
   plan.rotations = b.rotations;
   plan.middle = middle_rows(mesh_, out_.graph);
   is_known_ = drives_ = is_other_ = is_middle_ = mask();
-  for (Index32 const n : plan.middle.target) is_middle_[std::size_t(n)] = 1;
+  for (Index32 const n : plan.middle.target) is_middle_[n] = 1;
   for (std::size_t k = 0; k < b.known.size(); ++k) {
-    is_known_[std::size_t(b.known[k])] = 1;
-    if (b.drives[k] && !is_middle_[std::size_t(b.known[k])]) {
-      drives_[std::size_t(b.known[k])] = 1;
+    is_known_[b.known[k]] = 1;
+    if (b.drives[k] && !is_middle_[b.known[k]]) {
+      drives_[b.known[k]] = 1;
       plan.driving.push_back(b.known[k]);
       plan.driving_slots.push_back(Index32(k));
     }
@@ -231,26 +230,25 @@ void UnstructuredPlanner::take_boundary() {
 void UnstructuredPlanner::measure_distances() {
   BoundaryConditions const& b = out_.boundary;
   for (std::size_t k = 0; k < b.known.size(); ++k)
-    if (!b.drives[k]) is_other_[std::size_t(b.known[k])] = 1;
-  for (Index32 const n : b.slip_nodes) is_other_[std::size_t(n)] = 1;
-  for (auto const& image : b.images) is_other_[std::size_t(image.node)] = is_other_[std::size_t(image.owner)] = 1;
-  for (Index32 const n : b.joint_slip.of)
-    is_other_[std::size_t(n)] = 1;  // where periodic sides meet nodes have no images
-  for (Index32 const n : out_.plan.middle.target) is_other_[std::size_t(n)] = 0;
+    if (!b.drives[k]) is_other_[b.known[k]] = 1;
+  for (Index32 const n : b.slip_nodes) is_other_[n] = 1;
+  for (auto const& image : b.images) is_other_[image.node] = is_other_[image.owner] = 1;
+  for (Index32 const n : b.joint_slip.of) is_other_[n] = 1;  // where periodic sides meet nodes have no images
+  for (Index32 const n : out_.plan.middle.target) is_other_[n] = 0;
   std::vector<Index32> walls, others;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
-    if (drives_[std::size_t(n)]) {
+    if (drives_[n]) {
       walls.push_back(n);
       // Where a moving wall ends on another boundary, both are at no distance.
-      is_other_[std::size_t(n)] = 0;
-    } else if (is_other_[std::size_t(n)]) {
+      is_other_[n] = 0;
+    } else if (is_other_[n]) {
       others.push_back(n);
     }
   }
   from_wall_ = nearest_source(host_, mesh_.coordinates, out_.graph, walls);
   from_other_ = nearest_source(host_, mesh_.coordinates, out_.graph, others);
   // A wall that ends on another boundary has no gap to it.
-  for (Index32 const n : walls) gap_ = std::min(gap_, from_other_.distance[std::size_t(n)]);
+  for (Index32 const n : walls) gap_ = std::min(gap_, from_other_.distance[n]);
 }
 
 }  // namespace gridmorph::detail

@@ -14,13 +14,13 @@ std::vector<Index32> parts_of_nodes(Mesh const& mesh, NodeGraph const& graph, st
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const nodes = mesh.elements.nodes[e];
     for (Index32 const n : nodes) {
-      used[std::size_t(n)] = 1;
+      used[n] = 1;
       sets.join(nodes.front(), n);
     }
   }
   for (std::size_t n = 0; n < n_nodes; ++n) {
     Index32 const o = graph.representative[n];
-    if (cuts.empty() || cuts[std::size_t(o)] == 0) sets.join(Index32(n), o);
+    if (cuts.empty() || cuts[o] == 0) sets.join(Index32(n), o);
   }
   for (auto const& connection : mesh.connections) {
     if (!connection.periodic) continue;  // the others are at one place
@@ -31,7 +31,7 @@ std::vector<Index32> parts_of_nodes(Mesh const& mesh, NodeGraph const& graph, st
   Index32 count = 0;
   for (std::size_t n = 0; n < n_nodes; ++n) {
     if (used[n] == 0) continue;
-    Index32& own = number[std::size_t(root[n])];
+    Index32& own = number[root[n]];
     if (own < 0) own = count++;
     part[n] = own;
   }
@@ -64,15 +64,15 @@ class PartTaker {
   }
 
  private:
-  [[nodiscard]] bool has(Index32 n) const { return of_part_[std::size_t(n)] != 0; }
-  [[nodiscard]] Index32 place(Index32 n) const { return place_[std::size_t(n)]; }
+  [[nodiscard]] bool has(Index32 n) const { return of_part_[n] != 0; }
+  [[nodiscard]] Index32 place(Index32 n) const { return place_[n]; }
 
   void take_nodes() {
     for (std::size_t n = 0; n < of_part_.size(); ++n)
       if (of_part_[n] != 0) {
         place_[n] = Index32(out_.nodes.size());
         out_.nodes.push_back(Index32(n));
-        Index32& carrier = carrier_[std::size_t(graph_.representative[n])];
+        Index32& carrier = carrier_[graph_.representative[n]];
         if (carrier < 0) carrier = place_[n];
       }
     Mesh& mesh = out_.mesh;
@@ -103,9 +103,9 @@ class PartTaker {
         if (has(all.front())) {
           if (is_polyhedron) take_polyhedron(p);
           out_.elements.push_back(Index32(e));
-          mesh.elements.type.push_back(mesh_.elements.type[std::size_t(e)]);
+          mesh.elements.type.push_back(mesh_.elements.type[e]);
           mesh.elements.nodes.add(placed(all, nodes));
-          if (!mesh_.elements.number.empty()) mesh.elements.number.push_back(mesh_.elements.number[std::size_t(e)]);
+          if (!mesh_.elements.number.empty()) mesh.elements.number.push_back(mesh_.elements.number[e]);
         }
         if (is_polyhedron) ++p;
       }
@@ -161,12 +161,12 @@ class PartTaker {
   void take_graph() {
     std::vector<Index32> ends;
     for (std::size_t k = 0; k < out_.nodes.size(); ++k) {
-      Index32 const o = graph_.representative[std::size_t(out_.nodes[k])], own = carrier_[std::size_t(o)];
+      Index32 const o = graph_.representative[out_.nodes[k]], own = carrier_[o];
       out_.graph.representative.push_back(own);
       ends.clear();
       if (own == Index32(k))
         for (Index32 const end : graph_.neighbours[o])
-          if (Index32 const e = carrier_[std::size_t(end)]; e >= 0) ends.push_back(e);
+          if (Index32 const e = carrier_[end]; e >= 0) ends.push_back(e);
       std::sort(ends.begin(), ends.end());
       out_.graph.neighbours.add(ends);
     }
@@ -183,7 +183,7 @@ class PartTaker {
     auto const gather = [&](std::vector<Index32> const& nodes) {
       order.clear();
       for (std::size_t k = 0; k < nodes.size(); ++k)
-        if (Index32 const n = carrier_[std::size_t(nodes[k])]; n >= 0) order.emplace_back(n, Index32(k));
+        if (Index32 const n = carrier_[nodes[k]]; n >= 0) order.emplace_back(n, Index32(k));
       std::sort(order.begin(), order.end());
     };
     gather(boundary_.known);
@@ -191,20 +191,19 @@ class PartTaker {
     // A node at a cut drives the parts on those sides of it that have a moving wall there.
     std::vector<std::uint8_t> drives(out_.nodes.size(), 0);
     for (int const p : to.driving_patches)
-      for (Index32 const n : patch_nodes(out_.mesh.patches[std::size_t(p)]))
-        drives[std::size_t(out_.graph.representative[std::size_t(n)])] = 1;
+      for (Index32 const n : patch_nodes(out_.mesh.patches[p])) drives[out_.graph.representative[n]] = 1;
     for (auto const& [n, s] : order) {
-      slot[std::size_t(s)] = Index32(to.known.size());
+      slot[s] = Index32(to.known.size());
       to.known.push_back(n);
-      to.drives.push_back(boundary_.drives[std::size_t(s)] != 0 && drives[std::size_t(n)] != 0 ? 1 : 0);
+      to.drives.push_back(boundary_.drives[s] != 0 && drives[n] != 0 ? 1 : 0);
       out_.slots.push_back(s);
     }
     to.requests.n_boundary_nodes = Index(to.known.size());
     to.requests.defaults_yield = boundary_.requests.defaults_yield;
     for (auto request : boundary_.requests.requests) {
-      if (slot[std::size_t(request.boundary_node)] < 0) continue;
-      request.boundary_node = slot[std::size_t(request.boundary_node)];
-      request.node = to.known[std::size_t(request.boundary_node)];
+      if (slot[request.boundary_node] < 0) continue;
+      request.boundary_node = slot[request.boundary_node];
+      request.node = to.known[request.boundary_node];
       to.requests.requests.push_back(request);
     }
     gather(boundary_.slip_nodes);
@@ -214,7 +213,7 @@ class PartTaker {
     }
     take_joint_slip();
     for (PeriodicImage const& image : boundary_.images) {
-      Index32 const n = carrier_[std::size_t(image.node)], o = carrier_[std::size_t(image.owner)];
+      Index32 const n = carrier_[image.node], o = carrier_[image.owner];
       if (n >= 0 && o >= 0) to.images.push_back({n, o, image.rotation});
     }
     std::sort(to.images.begin(), to.images.end(),
@@ -227,14 +226,14 @@ class PartTaker {
     JointSlip& to = out_.boundary.joint_slip;
     out_.boundary.across_axes = boundary_.across_axes;
     for (std::size_t k = 0; k < from.of.size(); ++k) {
-      Index32 const n = carrier_[std::size_t(from.of[k])];
+      Index32 const n = carrier_[from.of[k]];
       if (n < 0) continue;
       to.of.push_back(n);
       for (Index s = from.first[k]; s < from.first[k + 1]; ++s) {
-        Index32 const at = from.place[std::size_t(s)];
-        to.surface.push_back(from.surface[std::size_t(s)]);
-        to.place.push_back(has(at) ? place(at) : carrier_[std::size_t(graph_.representative[std::size_t(at)])]);
-        to.turned.push_back(from.turned[std::size_t(s)]);
+        Index32 const at = from.place[s];
+        to.surface.push_back(from.surface[s]);
+        to.place.push_back(has(at) ? place(at) : carrier_[graph_.representative[at]]);
+        to.turned.push_back(from.turned[s]);
       }
       to.first.push_back(Index(to.surface.size()));
     }

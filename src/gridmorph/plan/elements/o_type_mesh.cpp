@@ -63,7 +63,7 @@ class OTypeMesh {
       for (int k = 0; k < tube_.around; ++k) {
         double const share = 1.0 / (n * tube_.around);
         edge += share * distance(tube_.point(j, k), tube_.point(j, k + 1));
-        radius += share * distance(tube_.point(j, k), tube_.centre[std::size_t(j)]);
+        radius += share * distance(tube_.point(j, k), tube_.centre[j]);
         to_box += share * distance(tube_.point(j, k), side_point(j, k));
       }
     // Rings, as fractions of the way from one limit to the next: core (0) to tube (1) to box (2).
@@ -165,8 +165,8 @@ class OTypeMesh {
     }
     int const j = std::min(int(sheet), last - 1);
     double const t = sheet - j;
-    return {between(tube_.centre[std::size_t(j)], tube_.centre[std::size_t(j) + 1], t),
-            between(tube_.point(j, k), tube_.point(j + 1, k), t), between(side_point(j, k), side_point(j + 1, k), t)};
+    return {between(tube_.centre[j], tube_.centre[j + 1], t), between(tube_.point(j, k), tube_.point(j + 1, k), t),
+            between(side_point(j, k), side_point(j + 1, k), t)};
   }
   /// The tube's ring goes on along its axis and widens towards a ring in the middle of the end face, by no more than it
   /// is far away: in front of an end close to the box lines would lie down otherwise.
@@ -194,7 +194,7 @@ class OTypeMesh {
   }
   [[nodiscard]] Vec3 ring_point(double sheet, int ring, int k) const {
     Frame const f = frame(sheet, k % (4 * side_));
-    double const r = radial_[std::size_t(ring)];
+    double const r = radial_[ring];
     if (r >= 1) return between(f.ring, f.box, r - 1);
     auto const [i, j] = core_perimeter(k);
     return between(core_point(sheet, i, j), f.ring, r);
@@ -233,7 +233,7 @@ class OTypeMesh {
       for (int k = 0; k < extent[1]; ++k)
         for (int r = 0; r < extent[0]; ++r) {
           zone.number.push_back(node_number(from + s, ring_number(from_ring + r, quarter * side_ + k)));
-          position_.push_back(ring_point(sheet_[std::size_t(from + s)], from_ring + r, quarter * side_ + k));
+          position_.push_back(ring_point(sheet_[from + s], from_ring + r, quarter * side_ + k));
         }
     zone.limit.fill(Limit::wrap);
     zone.limit[1] = Limit::outer;
@@ -248,7 +248,7 @@ class OTypeMesh {
       for (int j = 0; j < extent[1]; ++j)
         for (int i = 0; i < extent[0]; ++i) {
           zone.number.push_back(node_number(from + s, core_number(i, j)));
-          position_.push_back(core_point(sheet_[std::size_t(from + s)], i, j));
+          position_.push_back(core_point(sheet_[from + s], i, j));
         }
     zone.limit.fill(Limit::wrap);
     if (low) zone.limit[4] = Limit::outer;
@@ -268,13 +268,13 @@ class OTypeMesh {
   };
   [[nodiscard]] IndexRange range(Face const& f) const {
     auto const a = std::size_t(f.axis);
-    IndexRange r{{0, 0, 0}, mesh_.zones[std::size_t(f.zone)].extent};
+    IndexRange r{{0, 0, 0}, mesh_.zones[f.zone].extent};
     (f.side == 0 ? r.end[a] : r.begin[a]) = f.side == 0 ? 1 : r.end[a] - 1;
     return r;
   }
   [[nodiscard]] Index number(int zone, Index3 const& p) const {
-    Zone const& z = mesh_.zones[std::size_t(zone)];
-    return zones_[std::size_t(zone)].number[std::size_t(z.node(p) - z.first_node)];
+    Zone const& z = mesh_.zones[zone];
+    return zones_[zone].number[z.node(p) - z.first_node];
   }
   /// Corner (a, b) of a face, a and b along its two axes in ascending order.
   [[nodiscard]] Index3 corner(Face const& f, int a, int b) const {
@@ -294,7 +294,7 @@ class OTypeMesh {
         for (int const side : {0, 1}) {
           Face const f{z, axis, side};
           std::array<Index, 4> key{};
-          for (int c = 0; c < 4; ++c) key[std::size_t(c)] = number(z, corner(f, c & 1, c >> 1));
+          for (int c = 0; c < 4; ++c) key[c] = number(z, corner(f, c & 1, c >> 1));
           std::sort(key.begin(), key.end());
           faces[key].push_back(f);
         }
@@ -309,7 +309,7 @@ class OTypeMesh {
 
   void join(Face const& own, Face const& donor) {
     Interface1to1 face;
-    face.name = "to " + mesh_.zones[std::size_t(donor.zone)].name;
+    face.name = "to " + mesh_.zones[donor.zone].name;
     face.zone = own.zone;
     face.donor_zone = donor.zone;
     face.range = range(own);
@@ -318,7 +318,7 @@ class OTypeMesh {
     for (int c = 0; c < 4; ++c) {
       Index3 const p = corner(donor, c & 1, c >> 1);
       for (int n = 0; n < 3; ++n)
-        if (number(donor.zone, p) == number(own.zone, corner(own, n & 1, n >> 1))) there[std::size_t(n)] = p;
+        if (number(donor.zone, p) == number(own.zone, corner(own, n & 1, n >> 1))) there[n] = p;
     }
     Orientation& o = face.to_donor.orientation;
     auto const normal = std::size_t(own.axis);
@@ -327,9 +327,9 @@ class OTypeMesh {
     for (int n = 1; n < 3; ++n) {
       auto const tangent = std::size_t(n == 1 ? (own.axis == 0 ? 1 : 0) : (own.axis == 2 ? 1 : 2));
       for (std::size_t a = 0; a < 3; ++a)
-        if (there[std::size_t(n)][a] != there[0][a]) {
+        if (there[n][a] != there[0][a]) {
           o.axis[tangent] = int(a);
-          o.sign[tangent] = there[std::size_t(n)][a] > there[0][a] ? 1 : -1;
+          o.sign[tangent] = there[n][a] > there[0][a] ? 1 : -1;
         }
     }
     face.to_donor.own_origin = corner(own, 0, 0);
@@ -338,7 +338,7 @@ class OTypeMesh {
   }
 
   void add_patch(Face const& f) {
-    bool const outer = zones_[std::size_t(f.zone)].limit[std::size_t(2 * f.axis + f.side)] == Limit::outer;
+    bool const outer = zones_[f.zone].limit[2 * f.axis + f.side] == Limit::outer;
     std::string const family = outer ? "outer" : "wrap";
     mesh_.patches.push_back({family + " " + std::string(face_name(f.axis, f.side)),
                              outer ? "BCFarfield" : "BCWall",
@@ -356,7 +356,7 @@ class OTypeMesh {
       for (std::size_t n = 0; n < zones_[z].number.size(); ++n) {
         Index const node = mesh_.zones[z].first_node + Index(n);
         Index const from = first.try_emplace(zones_[z].number[n], node).first->second;
-        mesh_.coordinates.set(node, position_[std::size_t(from)]);
+        mesh_.coordinates.set(node, position_[from]);
       }
   }
 

@@ -19,7 +19,7 @@ namespace {
 std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTopology const& topology,
                                                std::vector<Index32> const& faces) {
   auto const& behind = topology.boundary.behind;
-  std::vector<std::uint8_t> back(std::size_t(topology.boundary.size()), 0);
+  std::vector<std::uint8_t> back(topology.boundary.size(), 0);
   // Faces on one side run along their common edge in opposite senses; in the plane one ends where the other begins.
   using Key = std::array<Index32, 2>;
   auto const keys = [&](Index32 f, bool of_neighbour) {
@@ -35,15 +35,15 @@ std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTop
   };
   std::map<Key, std::vector<Index32>> faces_with;
   for (Index32 const f : faces)
-    if (behind[std::size_t(f)] >= 0)
+    if (behind[f] >= 0)
       for (Key const& key : keys(f, false)) faces_with[key].push_back(f);
   std::vector<std::uint8_t> decided(back.size(), 0);
   for (Index32 const start : faces) {
-    if (behind[std::size_t(start)] < 0 || decided[std::size_t(start)] != 0) continue;
+    if (behind[start] < 0 || decided[start] != 0) continue;
     std::vector<Index32> front{start};
     auto const decide = [&](Index32 f) {
-      Index32 const other = behind[std::size_t(f)];
-      decided[std::size_t(f)] = decided[std::size_t(other)] = back[std::size_t(other)] = 1;
+      Index32 const other = behind[f];
+      decided[f] = decided[other] = back[other] = 1;
     };
     decide(start);
     while (!front.empty()) {
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> backs_of_inner_faces(Mesh const& mesh, UnstructuredTop
       front.pop_back();
       for (Key const& key : keys(f, true))
         for (Index32 const next : faces_with[key]) {
-          if (decided[std::size_t(next)] != 0) continue;
+          if (decided[next] != 0) continue;
           decide(next);
           front.push_back(next);
         }
@@ -68,16 +68,16 @@ std::vector<Index32> one_sided(Mesh const& mesh, UnstructuredTopology const& top
   std::vector<Index32> faces = all_faces;
   if (!topology.boundary.behind.empty()) {
     auto const back = backs_of_inner_faces(mesh, topology, faces);
-    std::erase_if(faces, [&](Index32 f) { return back[std::size_t(f)] != 0; });
+    std::erase_if(faces, [&](Index32 f) { return back[f] != 0; });
   }
-  auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
+  auto const owner = [&](Index32 n) { return graph.representative[n]; };
   bool const joined = std::any_of(faces.begin(), faces.end(), [&](Index32 f) {
     auto const face = topology.boundary.nodes[f];
     return std::any_of(face.begin(), face.end(), [&](Index32 n) { return owner(n) != n; });
   });
   if (!joined) return faces;
   auto const zone_of = [&](Index32 f) {
-    Index const e = topology.boundary.element[std::size_t(f)];
+    Index const e = topology.boundary.element[f];
     auto const next = std::upper_bound(mesh.zones.begin(), mesh.zones.end(), e,
                                        [](Index a, Zone const& zone) { return a < zone.first_element; });
     return next - mesh.zones.begin();
@@ -101,7 +101,7 @@ std::vector<Index32> one_sided(Mesh const& mesh, UnstructuredTopology const& top
 template <class Visit>
 void for_each_corner(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                      std::vector<Index32> const& faces, Visit&& visit) {
-  auto const owner = [&](Index32 n) { return graph.representative[std::size_t(n)]; };
+  auto const owner = [&](Index32 n) { return graph.representative[n]; };
   for (Index32 const f : faces) {
     auto const face = topology.boundary.nodes[f];
     std::size_t const n = face.size();
@@ -118,20 +118,20 @@ void for_each_corner(Mesh const& mesh, UnstructuredTopology const& topology, Nod
 CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                         std::vector<Index32> const& all_faces, std::vector<Index32> const& roots) {
   std::vector<Index32> const faces = one_sided(mesh, topology, graph, all_faces);
-  std::vector<Index32> place(std::size_t(mesh.n_nodes()), -1);
-  for (std::size_t r = 0; r < roots.size(); ++r) place[std::size_t(roots[r])] = Index32(r);
+  std::vector<Index32> place(mesh.n_nodes(), -1);
+  for (std::size_t r = 0; r < roots.size(); ++r) place[roots[r]] = Index32(r);
   CsrGraph one_rings;
   one_rings.first.assign(roots.size() + 1, 0);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32, Index32) {
-    if (Index32 const r = place[std::size_t(n)]; r >= 0) one_rings.first[std::size_t(r) + 1] += 2;
+    if (Index32 const r = place[n]; r >= 0) one_rings.first[r + 1] += 2;
   });
   for (std::size_t r = 0; r < roots.size(); ++r) one_rings.first[r + 1] += one_rings.first[r];
-  one_rings.item.resize(std::size_t(one_rings.first.back()));
+  one_rings.item.resize(one_rings.first.back());
   std::vector<Index> next(one_rings.first.begin(), one_rings.first.end() - 1);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
-    if (Index32 const r = place[std::size_t(n)]; r >= 0) {
-      one_rings.item[std::size_t(next[std::size_t(r)]++)] = a;
-      one_rings.item[std::size_t(next[std::size_t(r)]++)] = b;
+    if (Index32 const r = place[n]; r >= 0) {
+      one_rings.item[next[r]++] = a;
+      one_rings.item[next[r]++] = b;
     }
   });
   return one_rings;
@@ -140,11 +140,11 @@ CsrGraph wall_one_rings(Mesh const& mesh, UnstructuredTopology const& topology, 
 std::vector<Vec3> wall_normals(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
                                std::vector<Index32> const& all_faces) {
   std::vector<Index32> const faces = one_sided(mesh, topology, graph, all_faces);
-  std::vector<Vec3> normal(std::size_t(mesh.n_nodes()));
+  std::vector<Vec3> normal(mesh.n_nodes());
   Vec3 const across = plane_normal(mesh);
   for_each_corner(mesh, topology, graph, faces, [&](Index32 n, Index32 a, Index32 b) {
     Vec3 const x = mesh.coordinates[n], p = mesh.coordinates[a], q = mesh.coordinates[b];
-    normal[std::size_t(n)] += mesh.dimension == 2 ? cross(q - p, across) : cross(p - x, q - x);
+    normal[n] += mesh.dimension == 2 ? cross(q - p, across) : cross(p - x, q - x);
   });
   return normal;
 }

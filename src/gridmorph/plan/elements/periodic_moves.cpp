@@ -22,7 +22,7 @@ std::vector<RigidTransform> periodic_moves(HostInstance const& host, Mesh const&
     for (std::size_t n = 0; n < connection.nodes.size(); ++n) {
       from.push_back(mesh.coordinates[connection.nodes[n]]);
       to.push_back(mesh.coordinates[connection.donor_nodes[n]]);
-      free = free || joined.contains(graph.representative[std::size_t(connection.nodes[n])]);
+      free = free || joined.contains(graph.representative[connection.nodes[n]]);
     }
     if (!free) continue;
     RigidTransform const once = fit_periodic(*connection.periodic, from, to, size);

@@ -29,13 +29,12 @@ void UnstructuredPlanner::plan_outer_box() {
     if (!out_.boundary.drives[k]) slots.push_back(Index32(k));
   if (slots.empty()) return;
   PlaceOrder const is_before(mesh_.coordinates);
-  std::sort(slots.begin(), slots.end(),
-            [&](Index32 a, Index32 b) { return is_before(plan.known[std::size_t(a)], plan.known[std::size_t(b)]); });
+  std::sort(slots.begin(), slots.end(), [&](Index32 a, Index32 b) { return is_before(plan.known[a], plan.known[b]); });
   std::size_t const step = slots.size() / most + 1;
   WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
   auto const& nodes = plan.background_morph->plan().boundary_nodes;
   Mask is_wrap(nodes.size(), 0);
-  for (Index32 const b : wrap.boundary_node) is_wrap[std::size_t(b)] = 1;
+  for (Index32 const b : wrap.boundary_node) is_wrap[b] = 1;
   for (std::size_t b = 0; b < nodes.size(); ++b) {
     if (is_wrap[b]) continue;
     Vec3 x = plan.background->mesh.coordinates[nodes[b]];
@@ -44,7 +43,7 @@ void UnstructuredPlanner::plan_outer_box() {
     std::array<std::pair<double, Index32>, count + 1> nearest;
     nearest.fill({infinity, -1});
     for (std::size_t k = 0; k < slots.size(); k += step) {
-      double const d = distance(x, mesh_.coordinates[plan.known[std::size_t(slots[k])]]);
+      double const d = distance(x, mesh_.coordinates[plan.known[slots[k]]]);
       if (!(d < nearest.back().first * (1 - 1e-6))) continue;
       std::size_t at = nearest.size() - 1;
       for (; at > 0 && d < nearest[at - 1].first * (1 - 1e-6); --at) nearest[at] = nearest[at - 1];
@@ -82,11 +81,10 @@ void UnstructuredPlanner::plan_projections() {
   // Beyond the wrap the background mesh has the say, on partially wrapped elements too: layers went there only to
   // surround the wrap's nodes.
   Mask column = drives_;
-  for (Index32 const n : columns_.node) column[std::size_t(n)] = 1;
+  for (Index32 const n : columns_.node) column[n] = 1;
   std::vector<Index32> far;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
-    if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[std::size_t(n)] &&
-        !out_.report.regions.inside[std::size_t(n)])
+    if (out_.graph.carries(n) && !out_.graph.neighbours[n].empty() && !column[n] && !out_.report.regions.inside[n])
       far.push_back(n);
   FarRows rows = background_rows(host_, *plan.background, mesh_.coordinates, far);
   out_.report.far_nodes = Index(far.size());
@@ -99,7 +97,7 @@ void UnstructuredPlanner::project_wrap() {
   WrapNodes const wrap = wrap_nodes(*plan.background, *plan.background_morph);
   std::vector<Index32> candidates;
   for (Index e = 0; e < mesh_.n_elements(); ++e)
-    if (out_.report.regions.element[std::size_t(e)] != Region::far) candidates.push_back(Index32(e));
+    if (out_.report.regions.element[e] != Region::far) candidates.push_back(Index32(e));
   std::vector<Location> const found = locate(host_, mesh_, candidates, wrap.position);
   plan.wrap = interpolation_rows(host_, mesh_, found, wrap.boundary_node);
   for (Index32& n : plan.wrap.item) n = owner(n);

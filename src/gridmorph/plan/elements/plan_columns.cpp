@@ -16,20 +16,19 @@ namespace {
 /// Sorts faces by the mean of their corners: a node that several columns reach belongs to the first face, however faces
 /// are numbered.
 void sort_by_place(Mesh const& mesh, UnstructuredTopology const& topology, std::vector<Index32>& faces) {
-  std::vector<Vec3> middle(std::size_t(topology.boundary.size()));
+  std::vector<Vec3> middle(topology.boundary.size());
   for (Index32 const f : faces) {
     auto const corners = topology.boundary.nodes[f];
-    for (Index32 const n : corners) middle[std::size_t(f)] += (1.0 / double(corners.size())) * mesh.coordinates[n];
+    for (Index32 const n : corners) middle[f] += (1.0 / double(corners.size())) * mesh.coordinates[n];
   }
   PlaceOrder const is_before(mesh.coordinates);
-  std::sort(faces.begin(), faces.end(),
-            [&](Index32 a, Index32 b) { return is_before(middle[std::size_t(a)], a, middle[std::size_t(b)], b); });
+  std::sort(faces.begin(), faces.end(), [&](Index32 a, Index32 b) { return is_before(middle[a], a, middle[b], b); });
 }
 
 /// The place of each node of the mesh in a list, -1: not in it.
 std::vector<Index32> places_of_nodes(std::vector<Index32> const& list, Index n_nodes) {
-  std::vector<Index32> place(std::size_t(n_nodes), -1);
-  for (std::size_t k = 0; k < list.size(); ++k) place[std::size_t(list[k])] = Index32(k);
+  std::vector<Index32> place(n_nodes, -1);
+  for (std::size_t k = 0; k < list.size(); ++k) place[list[k]] = Index32(k);
   return place;
 }
 
@@ -47,20 +46,20 @@ void UnstructuredPlanner::find_driving_faces() {
     auto const& layer = options_.boundary_layers[l];
     std::vector<int> const patches = layer.walls.empty() ? b.driving_patches : select_patches(mesh_, layer.walls);
     for (int const p : patches) {
-      int& own = layer_of_patch_[std::size_t(p)];
+      int& own = layer_of_patch_[p];
       if (own >= 0)
-        throw MotionError("two boundary layers name patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
+        throw MotionError("two boundary layers name patch " + describe_patch(mesh_, mesh_.patches[p]) +
                           "; give each wall one");
       own = int(l);
       if (!std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p) &&
           !std::binary_search(b.standing_patches.begin(), b.standing_patches.end(), p) &&
           !std::binary_search(b.sliding_patches.begin(), b.sliding_patches.end(), p))
-        out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[std::size_t(p)]) +
+        out_.notes.push_back("patch " + describe_patch(mesh_, mesh_.patches[p]) +
                              " has a boundary layer but drives no near field; its columns are not held");
     }
   }
   for (Index f = 0; f < topology_.boundary.size(); ++f) {
-    int const p = face_patches_.patch[std::size_t(f)];
+    int const p = face_patches_.patch[f];
     if (p >= 0 && std::binary_search(b.driving_patches.begin(), b.driving_patches.end(), p))
       driving_faces_.push_back(Index32(f));
   }
@@ -91,9 +90,9 @@ void UnstructuredPlanner::find_columns() {
 }
 
 ColumnExtent UnstructuredPlanner::extent_of_face(Index32 face) const {
-  int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(face)])];
+  int const l = layer_of_patch_[face_patches_.patch[face]];
   if (l < 0) return {};
-  auto const& layer = options_.boundary_layers[std::size_t(l)];
+  auto const& layer = options_.boundary_layers[l];
   return {is_given(layer) ? layer.extent : BoundaryLayer::Extent::block, layer.layers, layer.thickness};
 }
 
@@ -101,13 +100,12 @@ Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask co
   std::vector<Index32> faces;
   std::vector<ColumnExtent> extents;
   for (Index f = 0; f < topology_.boundary.size(); ++f)
-    if (std::binary_search(patches.begin(), patches.end(), face_patches_.patch[std::size_t(f)]))
-      faces.push_back(Index32(f));
+    if (std::binary_search(patches.begin(), patches.end(), face_patches_.patch[f])) faces.push_back(Index32(f));
   sort_by_place(mesh_, topology_, faces);
   for (Index32 const f : faces) extents.push_back(extent_of_face(f));
   Columns const whole = make_columns(mesh_, topology_, out_.graph, faces, extents, taken);
   // Where a moving wall ends on one that does not move with it, and across gaps, what does not move gives way.
-  std::vector<double> most(std::size_t(mesh_.n_nodes()), infinity);
+  std::vector<double> most(mesh_.n_nodes(), infinity);
   for (std::size_t n = 0; n < most.size(); ++n)
     if (whole.height[n] > 0 && std::isfinite(from_wall_.distance[n]))
       most[n] = room_in_gap(from_wall_.distance[n], motion);
@@ -116,25 +114,25 @@ Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask co
 
 void UnstructuredPlanner::find_held_columns() {
   Mask taken = is_known_;
-  for (Index32 const n : columns_.node) taken[std::size_t(n)] = 1;
+  for (Index32 const n : columns_.node) taken[n] = 1;
   standing_ = columns_on(out_.boundary.standing_patches, taken, reach_);
-  for (Index32 const n : standing_.node) taken[std::size_t(n)] = 1;
+  for (Index32 const n : standing_.node) taken[n] = 1;
   // On another surface too a node has its own way to slip.
-  for (Index32 const n : out_.boundary.slip_nodes) taken[std::size_t(n)] = 1;
+  for (Index32 const n : out_.boundary.slip_nodes) taken[n] = 1;
   // They follow the motion, as far as their wall does.
   sliding_ = columns_on(out_.boundary.sliding_patches, taken, 0);
-  for (Index32 const n : sliding_.node) is_other_[std::size_t(n)] = 1;
-  for (Index32 const n : standing_.node) is_other_[std::size_t(n)] = 1;
+  for (Index32 const n : sliding_.node) is_other_[n] = 1;
+  for (Index32 const n : standing_.node) is_other_[n] = 1;
 }
 
 void UnstructuredPlanner::measure_others() {
   std::vector<Index32> others, given;
   Mask stands = mask();
-  for (Index32 const n : standing_.node) stands[std::size_t(n)] = 1;
+  for (Index32 const n : standing_.node) stands[n] = 1;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
-    if (!is_other_[std::size_t(n)]) continue;
+    if (!is_other_[n]) continue;
     others.push_back(n);
-    if (is_known_[std::size_t(n)] || stands[std::size_t(n)]) given.push_back(n);
+    if (is_known_[n] || stands[n]) given.push_back(n);
   }
   // What is free to slide begins where these end.
   bool const sliding = given.size() < others.size() && !given.empty();
@@ -147,9 +145,8 @@ std::vector<double> UnstructuredPlanner::most_heights() const {
   for (double& m : most)
     if (std::isfinite(m)) m = room_in_gap(m, reach_);
   for (Index32 const f : driving_faces_)
-    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
-        l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
-      for (Index32 const n : topology_.boundary.nodes[f]) most[std::size_t(owner(n))] = infinity;
+    if (int const l = layer_of_patch_[face_patches_.patch[f]]; l >= 0 && is_given(options_.boundary_layers[l]))
+      for (Index32 const n : topology_.boundary.nodes[f]) most[owner(n)] = infinity;
   return most;
 }
 
@@ -157,15 +154,15 @@ std::vector<double> UnstructuredPlanner::longest_by_edges() const {
   // By measurement on an airfoil and an ellipsoid (bench_turns): what is farther from the wall least squares carry
   // better.
   constexpr double of_edge = 0.5;
-  std::vector<double> out(std::size_t(mesh_.n_nodes()), infinity);
+  std::vector<double> out(mesh_.n_nodes(), infinity);
   for (Index32 const f : driving_faces_) {
     auto const face = topology_.boundary.nodes[f];
-    int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
-    if (l >= 0 && is_given(options_.boundary_layers[std::size_t(l)])) continue;
+    int const l = layer_of_patch_[face_patches_.patch[f]];
+    if (l >= 0 && is_given(options_.boundary_layers[l])) continue;
     for (std::size_t k = 0; k < face.size(); ++k) {
       Index32 const a = owner(face[k]), b = owner(face[(k + 1) % face.size()]);
       double const longest = of_edge * distance(mesh_.coordinates[a], mesh_.coordinates[b]);
-      for (Index32 const n : {a, b}) out[std::size_t(n)] = std::min(out[std::size_t(n)], longest);
+      for (Index32 const n : {a, b}) out[n] = std::min(out[n], longest);
     }
   }
   return out;
@@ -176,8 +173,7 @@ std::vector<double> UnstructuredPlanner::longest_where_walls_bend() const {
   TurningBodies const& all = out_.plan.turns_of_bodies;
   if (given == nullptr || all.size() == 0) return {};
   for (Index32 const f : driving_faces_)
-    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])];
-        l >= 0 && is_given(options_.boundary_layers[std::size_t(l)]))
+    if (int const l = layer_of_patch_[face_patches_.patch[f]]; l >= 0 && is_given(options_.boundary_layers[l]))
       return {};
   // By measurement on an airfoil and an ellipsoid (bench_turns): what lattices show of a bend in the plane they show
   // better than columns do, in space, where they are coarser, no better.
@@ -185,7 +181,7 @@ std::vector<double> UnstructuredPlanner::longest_where_walls_bend() const {
   double const cells = mesh_.dimension == 2 ? 1 : 4;
   auto const turn = turns_of_walls(*given);
   auto const place = places_of_nodes(out_.plan.driving, mesh_.n_nodes());
-  std::vector<double> longest(std::size_t(mesh_.n_nodes()), infinity);
+  std::vector<double> longest(mesh_.n_nodes(), infinity);
   for (std::size_t body = 0; body < wall_bodies_.bodies.size(); ++body) {
     double const bends = (1 - (all.limits.empty() ? 0 : all.limits[body].share)) * body_sizes_[body];
     if (!(body_rests_[body] > 0 && bends > 0)) continue;
@@ -194,13 +190,11 @@ std::vector<double> UnstructuredPlanner::longest_where_walls_bend() const {
       auto const face = topology_.boundary.nodes[f];
       for (std::size_t k = 0; k < face.size(); ++k) {
         Index32 const ends[2] = {owner(face[k]), owner(face[(k + 1) % face.size()])};
-        double const angle = 2 * norm(turn[std::size_t(place[std::size_t(ends[0])])].imaginary -
-                                      turn[std::size_t(place[std::size_t(ends[1])])].imaginary);
+        double const angle = 2 * norm(turn[place[ends[0]]].imaginary - turn[place[ends[1]]].imaginary);
         if (!(angle > 0)) continue;
         double const length = strain * body_rests_[body] / bends *
                               distance(mesh_.coordinates[ends[0]], mesh_.coordinates[ends[1]]) / angle;
-        for (Index32 const n : ends)
-          longest[std::size_t(n)] = std::min(longest[std::size_t(n)], std::max(length, least));
+        for (Index32 const n : ends) longest[n] = std::min(longest[n], std::max(length, least));
       }
     }
   }
@@ -217,19 +211,17 @@ double UnstructuredPlanner::lattice_spacing(WallBody const& body) const {
 }
 
 std::vector<BoundaryLayer::Mode> UnstructuredPlanner::modes_of_walls() const {
-  std::vector<BoundaryLayer::Mode> mode(std::size_t(mesh_.n_nodes()), BoundaryLayer::Mode::rotate);
+  std::vector<BoundaryLayer::Mode> mode(mesh_.n_nodes(), BoundaryLayer::Mode::rotate);
   for (Index32 const f : driving_faces_)
-    if (int const l = layer_of_patch_[std::size_t(face_patches_.patch[std::size_t(f)])]; l >= 0)
-      for (Index32 const n : topology_.boundary.nodes[f])
-        mode[std::size_t(owner(n))] = options_.boundary_layers[std::size_t(l)].mode;
+    if (int const l = layer_of_patch_[face_patches_.patch[f]]; l >= 0)
+      for (Index32 const n : topology_.boundary.nodes[f]) mode[owner(n)] = options_.boundary_layers[l].mode;
   return mode;
 }
 
 void UnstructuredPlanner::plan_one_rings() {
   UnstructuredPlan& plan = out_.plan;
   auto const mode = modes_of_walls();
-  for (Index32 const n : plan.driving)
-    plan.turns.push_back(mode[std::size_t(n)] == BoundaryLayer::Mode::translate ? 0 : 1);
+  for (Index32 const n : plan.driving) plan.turns.push_back(mode[n] == BoundaryLayer::Mode::translate ? 0 : 1);
   plan.one_rings = wall_one_rings(mesh_, topology_, out_.graph, driving_faces_, plan.driving);
 }
 
@@ -245,8 +237,8 @@ void UnstructuredPlanner::find_wall_lines() {
     Vec3 const line = x[columns_.node[k]] - x[root];
     double const length = norm(line);
     if (!(length > 0)) continue;
-    double const side = dot(line, normal[std::size_t(root)]) < 0 ? -1 : 1;
-    lines[std::size_t(place[std::size_t(root)])].push_back((side / length) * line);
+    double const side = dot(line, normal[root]) < 0 ? -1 : 1;
+    lines[place[root]].push_back((side / length) * line);
   }
   plan.first_line.assign(1, 0);
   for (auto const& of_node : lines) {
@@ -262,12 +254,12 @@ void UnstructuredPlanner::plan_columns() {
   std::vector<Index32> const place = places_of_nodes(plan.driving, mesh_.n_nodes());
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
     Index32 const root = columns_.root[k];
-    double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[std::size_t(root)]);
-    Mode const m = mode[std::size_t(root)];
+    double const s = std::min(1.0, columns_.above_wall[k] / columns_.height[root]);
+    Mode const m = mode[root];
     // Smooth, and level at the wall: the first cells turn with it.
     double const turn = m == Mode::translate ? 0 : m == Mode::blend ? 1 - s * s * (3 - 2 * s) : 1;
     plan.columns.node.push_back(columns_.node[k]);
-    plan.columns.root.push_back(place[std::size_t(root)]);
+    plan.columns.root.push_back(place[root]);
     plan.columns.turn.push_back(float(turn));
   }
 }

@@ -18,26 +18,26 @@ namespace {
 
 /// Mean over the elements around each node of their shortest over their longest edge, 0 < grade <= 1. Cost O(corners).
 std::vector<double> node_grades(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph) {
-  std::vector<double> grade_of_element(std::size_t(mesh.n_elements()), 1);
+  std::vector<double> grade_of_element(mesh.n_elements(), 1);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
-    ElementType const type = mesh.elements.type[std::size_t(e)];
+    ElementType const type = mesh.elements.type[e];
     if (type == ElementType::polyhedron) continue;
     auto const nodes = mesh.elements.corners(e);
     double shortest = std::numeric_limits<double>::infinity(), longest = 0;
     for (int k = 0; k < n_edges(type); ++k) {
-      double const length = distance(mesh.coordinates[nodes[std::size_t(edge_corner(type, k, 0))]],
-                                     mesh.coordinates[nodes[std::size_t(edge_corner(type, k, 1))]]);
+      double const length =
+          distance(mesh.coordinates[nodes[edge_corner(type, k, 0)]], mesh.coordinates[nodes[edge_corner(type, k, 1)]]);
       if (length > 0) shortest = std::min(shortest, length);
       longest = std::max(longest, length);
     }
-    if (longest > 0) grade_of_element[std::size_t(e)] = shortest / longest;
+    if (longest > 0) grade_of_element[e] = shortest / longest;
   }
-  std::vector<double> grade(std::size_t(mesh.n_nodes()), 0);
-  std::vector<Index32> count(std::size_t(mesh.n_nodes()), 0);
+  std::vector<double> grade(mesh.n_nodes(), 0);
+  std::vector<Index32> count(mesh.n_nodes(), 0);
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
-    std::size_t const o = std::size_t(graph.representative[std::size_t(n)]);
+    std::size_t const o = std::size_t(graph.representative[n]);
     for (Index32 const e : topology.elements_of_nodes[n]) {
-      grade[o] += grade_of_element[std::size_t(e)];
+      grade[o] += grade_of_element[e];
       ++count[o];
     }
   }
@@ -54,13 +54,12 @@ std::vector<double> wall_curvature(Mesh const& mesh, UnstructuredTopology const&
   for (Index32 const f : faces) {
     auto const face = topology.boundary.nodes[f];
     for (std::size_t k = 0; k < face.size(); ++k) {
-      Index32 const a = graph.representative[std::size_t(face[k])],
-                    b = graph.representative[std::size_t(face[(k + 1) % face.size()])];
-      Vec3 const m = normal[std::size_t(a)], n = normal[std::size_t(b)];
+      Index32 const a = graph.representative[face[k]], b = graph.representative[face[(k + 1) % face.size()]];
+      Vec3 const m = normal[a], n = normal[b];
       double const edge = distance(mesh.coordinates[a], mesh.coordinates[b]);
       if (!(edge > 0) || !(norm(m) > 0) || !(norm(n) > 0)) continue;
       double const angle = std::atan2(norm(cross(m, n)), dot(m, n));
-      for (Index32 const at : {a, b}) curvature[std::size_t(at)] = std::max(curvature[std::size_t(at)], angle / edge);
+      for (Index32 const at : {a, b}) curvature[at] = std::max(curvature[at], angle / edge);
     }
   }
   return curvature;
@@ -78,12 +77,12 @@ std::function<double(Index32, Index32)> UnstructuredPlanner::layer_weight() {
     case LayerWeight::inverse_distance: return [=](Index32 a, Index32 b) { return 1 / length(a, b); };
     case LayerWeight::quality:
       return [=, grade = node_grades(mesh_, topology_, out_.graph)](Index32 a, Index32 b) {
-        return (grade[std::size_t(a)] + grade[std::size_t(b)]) / length(a, b);
+        return (grade[a] + grade[b]) / length(a, b);
       };
     case LayerWeight::curvature:
       return [=, this, bend = wall_curvature(mesh_, topology_, out_.graph, driving_faces_)](Index32 a, Index32 b) {
-        Index32 const wall = from_wall_.source[std::size_t(b)];
-        double const reach = wall < 0 ? 0 : from_wall_.distance[std::size_t(b)] * bend[std::size_t(wall)];
+        Index32 const wall = from_wall_.source[b];
+        double const reach = wall < 0 ? 0 : from_wall_.distance[b] * bend[wall];
         return 1 / (length(a, b) * (1 + reach) * (1 + reach));
       };
   }
@@ -93,15 +92,14 @@ std::function<double(Index32, Index32)> UnstructuredPlanner::layer_weight() {
 void UnstructuredPlanner::measure_columns() {
   column_reach_ = columns_.full_rise;
   for (Index32 const n : columns_.node)
-    if (Index32 const wall = from_wall_.source[std::size_t(n)]; wall >= 0)
-      column_reach_[std::size_t(wall)] =
-          std::max(column_reach_[std::size_t(wall)], from_wall_.distance[std::size_t(n)]);
+    if (Index32 const wall = from_wall_.source[n]; wall >= 0)
+      column_reach_[wall] = std::max(column_reach_[wall], from_wall_.distance[n]);
 }
 
 void UnstructuredPlanner::plan_layers() {
   measure_columns();
   Mask seeds = drives_;
-  for (Index32 const n : columns_.node) seeds[std::size_t(n)] = 1;
+  for (Index32 const n : columns_.node) seeds[n] = 1;
   if (fitted_)
     plan_fit();
   else
@@ -112,8 +110,7 @@ void UnstructuredPlanner::plan_layers() {
   for (std::size_t n = 0; n < seeds.size(); ++n)
     if (seeds[n]) layer[n] = 0;
   for (int l = 0; l < near.n_layers(); ++l)
-    for (Index r = near.level[std::size_t(l)]; r < near.level[std::size_t(l) + 1]; ++r)
-      layer[std::size_t(near.rows.target[std::size_t(r)])] = l + 1;
+    for (Index r = near.level[l]; r < near.level[l + 1]; ++r) layer[near.rows.target[r]] = l + 1;
   out_.report.n_layers = near.n_layers();
 }
 
@@ -128,7 +125,7 @@ void UnstructuredPlanner::plan_near(Mask const& seeds) {
     plan_smooth_walls();
   else
     plan_layer_turns();
-  for (Index32 const n : plan.near.rows.target) wanted[std::size_t(n)] = 0;
+  for (Index32 const n : plan.near.rows.target) wanted[n] = 0;
   out_.report.unreached = std::count(wanted.begin(), wanted.end(), 1);
   if (out_.report.unreached > 0)
     out_.notes.push_back(
@@ -143,13 +140,13 @@ void UnstructuredPlanner::plan_fit() {
   constexpr double reach = 3;  // of the height of the column below
   auto const fade = [&](std::size_t n) {
     Index32 const wall = from_wall_.source[n];
-    double const height = wall < 0 ? 0 : column_reach_[std::size_t(wall)];
+    double const height = wall < 0 ? 0 : column_reach_[wall];
     if (!(height > 0)) return 0.0;
     double const s = std::min(1.0, beyond_column(n) / (reach * height));
     return 1 - s * s * (3 - 2 * s);
   };
   Mask ends = mask(), wanted = mask();
-  for (Index32 const n : columns_.node) ends[std::size_t(n)] = 1;
+  for (Index32 const n : columns_.node) ends[n] = 1;
   auto const is_moved = [&](std::size_t n) {
     return drives_[n] == 0 && out_.graph.carries(Index32(n)) && !out_.graph.neighbours[Index32(n)].empty();
   };
@@ -157,13 +154,13 @@ void UnstructuredPlanner::plan_fit() {
   plan.near = make_layers(host_, out_.graph, mesh_.coordinates, ends, wanted, from_wall_.distance, layer_weight());
   // Only the ends of columns are where layers begin.
   Mask begins = mask(), passes = mask();
-  for (Index32 const n : plan.near.rows.item) begins[std::size_t(n)] = ends[std::size_t(n)];
-  for (Index32 const n : plan.near.rows.target) passes[std::size_t(n)] = 1;
+  for (Index32 const n : plan.near.rows.item) begins[n] = ends[n];
+  for (Index32 const n : plan.near.rows.target) passes[n] = 1;
   double const nearest = 1e-14 * extent_of(host_, mesh_.coordinates).size();
   std::vector<FieldReader> readers;
-  auto const add = [&](Index32 n) { readers.push_back({n, std::max(nearest, from_wall_.distance[std::size_t(n)])}); };
+  auto const add = [&](Index32 n) { readers.push_back({n, std::max(nearest, from_wall_.distance[n])}); };
   for (Index32 const n : columns_.node)
-    if (begins[std::size_t(n)] != 0) add(n);
+    if (begins[n] != 0) add(n);
   plan.n_fitted_ends = Index(readers.size());
   plan.near_fade.assign(readers.size(), 0);
   for (std::size_t n = 0; n < n_nodes; ++n) {
@@ -184,10 +181,10 @@ void UnstructuredPlanner::plan_smooth_walls() {
   UnstructuredPlan& plan = out_.plan;
   Box box;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
-    if (near_[std::size_t(n)]) box.include(mesh_.coordinates[n]);
+    if (near_[n]) box.include(mesh_.coordinates[n]);
   plan.beside_slots = slots_beside_walls();
   std::vector<Index32> sources = plan.driving;
-  for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[std::size_t(s)]);
+  for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[s]);
   plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
                                     box.high, most_lattice_nodes, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
@@ -202,8 +199,8 @@ std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
   BoundaryConditions const& b = out_.boundary;
   auto const& rules = b.motion->motion().rules;
   auto const is_moved = [&](Request const& r) {
-    if (std::holds_alternative<FixedRule>(rules[std::size_t(r.rule)].rule)) return false;
-    return !out_.displacement || !((*out_.displacement)[std::size_t(r.boundary_node)] == Vec3{});
+    if (std::holds_alternative<FixedRule>(rules[r.rule].rule)) return false;
+    return !out_.displacement || !((*out_.displacement)[r.boundary_node] == Vec3{});
   };
   auto const surface = [](Request const& r) { return std::pair(r.patch, r.interface); };
   std::set<std::pair<int, int>> moving;
@@ -211,10 +208,10 @@ std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
     if (is_moved(r)) moving.insert(surface(r));
   Mask is_beside(b.known.size(), 0);
   for (Request const& r : b.requests.requests) {
-    auto const n = std::size_t(b.known[std::size_t(r.boundary_node)]);
+    auto const n = std::size_t(b.known[r.boundary_node]);
     bool const is_region = r.patch >= int(mesh_.patches.size());
     if (near_[n] && !drives_[n] && !is_middle_[n] && !is_region && moving.contains(surface(r)))
-      is_beside[std::size_t(r.boundary_node)] = 1;
+      is_beside[r.boundary_node] = 1;
   }
   std::vector<Index32> out;
   for (std::size_t s = 0; s < is_beside.size(); ++s)
@@ -233,18 +230,17 @@ void UnstructuredPlanner::plan_layer_turns() {
     return reach > 0 && std::isfinite(d) ? reach / (reach + d) : 0;
   };
   for (Index r = 0; r < rows.size(); ++r) {
-    Index const from = rows.first[std::size_t(r)], to = rows.first[std::size_t(r) + 1];
+    Index const from = rows.first[r], to = rows.first[r + 1];
     double of_sources = 0;
-    for (Index k = from; k < to; ++k)
-      of_sources += double(rows.weight[std::size_t(k)]) * share(rows.item[std::size_t(k)]);
-    double const own = share(rows.target[std::size_t(r)]);
+    for (Index k = from; k < to; ++k) of_sources += double(rows.weight[k]) * share(rows.item[k]);
+    double const own = share(rows.target[r]);
     out_.plan.near_turn.push_back(of_sources > 0 ? float(std::min(1.0, own / of_sources)) : 0);
   }
 }
 
 double UnstructuredPlanner::beyond_column(std::size_t n) const {
   Index32 const wall = from_wall_.source[n];
-  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - column_reach_[std::size_t(wall)]);
+  return wall < 0 ? infinity : std::max(0.0, from_wall_.distance[n] - column_reach_[wall]);
 }
 
 }  // namespace gridmorph::detail

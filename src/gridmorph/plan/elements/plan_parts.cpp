@@ -25,8 +25,8 @@ void order_as(std::vector<Index32> const& slots, CommonMotion& common) {
   CommonMotion const before = common;
   for (std::size_t k = 0; k < slots.size(); ++k) {
     auto const from = std::lower_bound(ascending.begin(), ascending.end(), slots[k]) - ascending.begin();
-    common.position[k] = before.position[std::size_t(from)];
-    common.weight[k] = before.weight[std::size_t(from)];
+    common.position[k] = before.position[from];
+    common.weight[k] = before.weight[from];
   }
 }
 
@@ -37,12 +37,11 @@ std::vector<UnstructuredPlanner::Part> UnstructuredPlanner::find_parts() const {
   if (options_.elements.background) return {};
   auto const n_nodes = std::size_t(mesh_.n_nodes());
   std::vector<Index32> slot(n_nodes, -1);
-  for (std::size_t k = 0; k < out_.plan.known.size(); ++k) slot[std::size_t(out_.plan.known[k])] = Index32(k);
+  for (std::size_t k = 0; k < out_.plan.known.size(); ++k) slot[out_.plan.known[k]] = Index32(k);
   auto const slots_of = [&](std::vector<Index32> const& number) {
     std::vector<std::vector<Index32>> out(count_of(number));
     for (std::size_t n = 0; n < n_nodes; ++n)
-      if (Index32 const s = slot[std::size_t(owner(Index32(n)))]; number[n] >= 0 && s >= 0)
-        out[std::size_t(number[n])].push_back(s);
+      if (Index32 const s = slot[owner(Index32(n))]; number[n] >= 0 && s >= 0) out[number[n]].push_back(s);
     for (auto& list : out) {
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -52,14 +51,13 @@ std::vector<UnstructuredPlanner::Part> UnstructuredPlanner::find_parts() const {
   auto const part = parts_of_nodes(mesh_, out_.graph, {});
   auto const slots = slots_of(part);
   // Zones on two sides of nodes whose displacement is given learn nothing of one another.
-  bool const cut = std::any_of(out_.plan.copied.begin(), out_.plan.copied.end(),
-                               [&](Index32 n) { return is_known_[std::size_t(n)] != 0; });
+  bool const cut =
+      std::any_of(out_.plan.copied.begin(), out_.plan.copied.end(), [&](Index32 n) { return is_known_[n] != 0; });
   auto const domain = cut ? parts_of_nodes(mesh_, out_.graph, is_known_) : part;
   auto const domain_slots = cut ? slots_of(domain) : slots;
   std::vector<Index32> part_of_domain(domain_slots.size(), -1), domains_of_part(slots.size(), 0);
   for (std::size_t n = 0; n < n_nodes; ++n)
-    if (domain[n] >= 0 && std::exchange(part_of_domain[std::size_t(domain[n])], part[n]) < 0)
-      ++domains_of_part[std::size_t(part[n])];
+    if (domain[n] >= 0 && std::exchange(part_of_domain[domain[n]], part[n]) < 0) ++domains_of_part[part[n]];
   std::vector<Part> out;
   std::vector<Index32> place_of_domain(domain_slots.size(), -1), place_of_part(slots.size(), -1);
   auto const add = [&](std::optional<CommonMotion> common) {
@@ -77,8 +75,8 @@ std::vector<UnstructuredPlanner::Part> UnstructuredPlanner::find_parts() const {
   if (out.size() == 1 && !out.front().common) return {};
   for (std::size_t n = 0; n < n_nodes; ++n) {
     if (domain[n] < 0) continue;
-    Index32 const own = place_of_domain[std::size_t(domain[n])];
-    out[std::size_t(own >= 0 ? own : place_of_part[std::size_t(part[n])])].nodes[n] = 1;
+    Index32 const own = place_of_domain[domain[n]];
+    out[own >= 0 ? own : place_of_part[part[n]]].nodes[n] = 1;
   }
   std::erase_if(out, [](Part const& p) { return std::find(p.nodes.begin(), p.nodes.end(), 1) == p.nodes.end(); });
   return out;
@@ -89,33 +87,33 @@ std::optional<CommonMotion> UnstructuredPlanner::motion_in_common(std::vector<In
   if (slots.empty()) return {};
   auto const& rules = out_.boundary.motion->motion().rules;
   Mask is_here(out_.plan.known.size(), 0);
-  for (Index32 const s : slots) is_here[std::size_t(s)] = 1;
+  for (Index32 const s : slots) is_here[s] = 1;
   std::set<int> asking;
   for (auto const& request : out_.boundary.requests.requests)
-    if (is_here[std::size_t(request.boundary_node)] != 0) asking.insert(request.rule);
-  auto const rule = [&](int r) -> Rule const& { return rules[std::size_t(r)].rule; };
+    if (is_here[request.boundary_node] != 0) asking.insert(request.rule);
+  auto const rule = [&](int r) -> Rule const& { return rules[r].rule; };
   // What stands has nothing in common with what moves.
   if (std::any_of(asking.begin(), asking.end(), [&](int r) { return std::holds_alternative<FixedRule>(rule(r)); }))
     return {};
   std::vector<Vec3> given;
   if (out_.displacement)
-    for (Index32 const s : slots) given.push_back((*out_.displacement)[std::size_t(s)]);
+    for (Index32 const s : slots) given.push_back((*out_.displacement)[s]);
   bool const prescribed =
       std::any_of(asking.begin(), asking.end(), [&](int r) { return std::holds_alternative<PrescribedRule>(rule(r)); });
   bool const is_known = out_.displacement && largest_norm(*out_.displacement) > 0 && !prescribed;
   // Of displacements to come one rule for all may be expected to move all alike.
   if (is_known ? !(largest_norm(given) > 0) : asking.size() > 1) return {};
   for (std::size_t k = 0; k < out_.boundary.slip_nodes.size(); ++k) {
-    if (number[std::size_t(out_.boundary.slip_nodes[k])] != of) continue;
+    if (number[out_.boundary.slip_nodes[k]] != of) continue;
     for (Index32 const s : out_.boundary.slip_surfaces[Index(k)]) {
-      SlipKind const kind = out_.plan.surfaces[std::size_t(s)].kind;
+      SlipKind const kind = out_.plan.surfaces[s].kind;
       if (kind == SlipKind::axial || kind == SlipKind::facets) return {};
     }
   }
   std::vector<Index32> nodes;
   std::vector<Vec3> position;
   for (Index32 const s : slots) {
-    nodes.push_back(out_.plan.known[std::size_t(s)]);
+    nodes.push_back(out_.plan.known[s]);
     position.push_back(mesh_.coordinates[nodes.back()]);
   }
   CommonMotion common = common_motion(std::move(position), areas(nodes), common_limits(number, of));
@@ -128,10 +126,10 @@ CommonLimits UnstructuredPlanner::common_limits(std::vector<Index32> const& numb
   CommonLimits limits;
   std::set<Index32> surfaces;
   for (std::size_t k = 0; k < b.slip_nodes.size(); ++k)
-    if (number[std::size_t(b.slip_nodes[k])] == of)
+    if (number[b.slip_nodes[k]] == of)
       surfaces.insert(b.slip_surfaces[Index(k)].begin(), b.slip_surfaces[Index(k)].end());
   for (Index32 const s : surfaces) {
-    SlipSurface const& surface = out_.plan.surfaces[std::size_t(s)];
+    SlipSurface const& surface = out_.plan.surfaces[s];
     if (surface.kind == SlipKind::plane)
       limits.planes.push_back({surface.origin, surface.direction});
     else
@@ -139,7 +137,7 @@ CommonLimits UnstructuredPlanner::common_limits(std::vector<Index32> const& numb
   }
   BoundaryConditions own;  // copies that move as one; where a rule gives both they are no limit
   for (PeriodicImage const& image : b.images)
-    if (number[std::size_t(image.node)] == of) own.images.push_back(image);
+    if (number[image.node] == of) own.images.push_back(image);
   if (!own.images.empty()) limits.copies = periodic_moves(host_, mesh_, out_.graph, own, 1);
   return limits;
 }
@@ -148,7 +146,7 @@ void UnstructuredPlanner::plan_parts(std::vector<Part> parts) {
   UnstructuredReport& report = out_.report;
   auto const n_nodes = std::size_t(mesh_.n_nodes());
   report.layer.assign(n_nodes, -1);
-  report.regions.element.assign(std::size_t(mesh_.n_elements()), Region::far);
+  report.regions.element.assign(mesh_.n_elements(), Region::far);
   report.regions.near.assign(n_nodes, 0);
   report.regions.inside.assign(n_nodes, 0);
   for (Part& part : parts) plan_part(std::move(part));
@@ -174,7 +172,7 @@ void UnstructuredPlanner::plan_part(Part part) {
   }
   auto const rest_of = [&](std::vector<Vec3> const& displacement) {
     std::vector<Vec3> rest;
-    for (Index32 const s : to.slots) rest.push_back(displacement[std::size_t(s)]);
+    for (Index32 const s : to.slots) rest.push_back(displacement[s]);
     if (to.common) {
       auto const move = kernels::common_move(to.common->frame, to.common->fit(rest), true);
       for (std::size_t k = 0; k < rest.size(); ++k)
@@ -201,7 +199,7 @@ void UnstructuredPlanner::plan_part(Part part) {
   if (taken) {
     take_part(to, taken->elements, planned);
   } else {
-    std::vector<Index32> elements(std::size_t(mesh_.n_elements()));
+    std::vector<Index32> elements(mesh_.n_elements());
     std::iota(elements.begin(), elements.end(), Index32(0));
     take_part(to, elements, planned);
   }
@@ -213,10 +211,10 @@ void UnstructuredPlanner::take_part(PartPlan const& part, std::vector<Index32> c
                                     PreparedUnstructured const& planned) {
   UnstructuredPlan const& from = *part.plan;
   UnstructuredPlan& to = out_.plan;
-  auto const node = [&](Index32 n) { return part.nodes[std::size_t(n)]; };
+  auto const node = [&](Index32 n) { return part.nodes[n]; };
   for (std::size_t k = 0; k < from.columns.node.size(); ++k) {
-    Index32 const own = from.driving_slots[std::size_t(from.columns.root[k])];
-    Index32 const wall = to.known[std::size_t(part.slots[std::size_t(own)])];
+    Index32 const own = from.driving_slots[from.columns.root[k]];
+    Index32 const wall = to.known[part.slots[own]];
     to.columns.node.push_back(node(from.columns.node[k]));
     to.columns.root.push_back(
         Index32(std::lower_bound(to.driving.begin(), to.driving.end(), wall) - to.driving.begin()));
@@ -225,7 +223,7 @@ void UnstructuredPlanner::take_part(PartPlan const& part, std::vector<Index32> c
   for (std::size_t k = 0; k < from.residual_nodes.size(); ++k) {
     Index32 const slot = from.residual_slot[k];
     to.residual_nodes.push_back(node(from.residual_nodes[k]));
-    to.residual_slot.push_back(slot < 0 ? -1 : part.slots[std::size_t(slot)]);
+    to.residual_slot.push_back(slot < 0 ? -1 : part.slots[slot]);
     to.residual_surfaces.add(from.residual_surfaces[Index(k)]);
   }
   UnstructuredReport const& own = planned.report;
@@ -236,8 +234,7 @@ void UnstructuredPlanner::take_part(PartPlan const& part, std::vector<Index32> c
     sum.regions.near[at] = own.regions.near[n];
     sum.regions.inside[at] = own.regions.inside[n];
   }
-  for (std::size_t e = 0; e < elements.size(); ++e)
-    sum.regions.element[std::size_t(elements[e])] = own.regions.element[e];
+  for (std::size_t e = 0; e < elements.size(); ++e) sum.regions.element[elements[e]] = own.regions.element[e];
   sum.layer_height = std::max(sum.layer_height, own.layer_height);
   sum.offset = std::max(sum.offset, own.offset);
   sum.wrap_distance = std::max(sum.wrap_distance, own.wrap_distance);

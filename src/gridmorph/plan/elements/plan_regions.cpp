@@ -36,23 +36,21 @@ Classification classify_by_hole(HostInstance const& host, Mesh const& mesh, Back
     points.push_back(x);
   }
   Classification out;
-  out.inside.assign(std::size_t(mesh.n_nodes()), 0);
+  out.inside.assign(mesh.n_nodes(), 0);
   auto const in_background = locate(host, as_hexahedra(background.mesh), points);
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    out.inside[std::size_t(candidates[k])] = in_background[k].distance > 0 ? 1 : 0;
-  out.element.assign(std::size_t(mesh.n_elements()), Region::far);
+  for (std::size_t k = 0; k < candidates.size(); ++k) out.inside[candidates[k]] = in_background[k].distance > 0 ? 1 : 0;
+  out.element.assign(mesh.n_elements(), Region::far);
   for (Index e = 0; e < mesh.n_elements(); ++e) {
     auto const corners = mesh.elements.corners(e);
-    auto const n = std::count_if(corners.begin(), corners.end(), [&](Index32 c) { return out.inside[std::size_t(c)]; });
-    if (n > 0) out.element[std::size_t(e)] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
+    auto const n = std::count_if(corners.begin(), corners.end(), [&](Index32 c) { return out.inside[c]; });
+    if (n > 0) out.element[e] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
   }
   for (Location const& place : locate(host, mesh, wrap_nodes))
-    if (place.element >= 0 && out.element[std::size_t(place.element)] == Region::far)
-      out.element[std::size_t(place.element)] = Region::partial;
-  out.near.assign(std::size_t(mesh.n_nodes()), 0);
+    if (place.element >= 0 && out.element[place.element] == Region::far) out.element[place.element] = Region::partial;
+  out.near.assign(mesh.n_nodes(), 0);
   for (Index e = 0; e < mesh.n_elements(); ++e)
-    if (out.element[std::size_t(e)] != Region::far)
-      for (Index32 const n : mesh.elements.nodes[e]) out.near[std::size_t(n)] = 1;
+    if (out.element[e] != Region::far)
+      for (Index32 const n : mesh.elements.nodes[e]) out.near[n] = 1;
   out.count();
   return out;
 }
@@ -90,9 +88,9 @@ void UnstructuredPlanner::find_regions() {
     classify_by_wrap();
   near_ = mask();
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
-    if (out_.report.regions.near[std::size_t(n)]) near_[std::size_t(owner(n))] = 1;
+    if (out_.report.regions.near[n]) near_[owner(n)] = 1;
   // Columns are kept whole, wherever the wrap ends.
-  for (Index32 const n : columns_.node) near_[std::size_t(n)] = 1;
+  for (Index32 const n : columns_.node) near_[n] = 1;
 }
 
 void UnstructuredPlanner::classify_by_distance() {
@@ -101,14 +99,14 @@ void UnstructuredPlanner::classify_by_distance() {
   regions.inside = regions.near = mask();
   for (std::size_t n = 0; n < regions.inside.size(); ++n)
     regions.inside[n] = from_wall_.distance[n] < out_.report.offset ? 1 : 0;
-  regions.element.assign(std::size_t(mesh_.n_elements()), Region::far);
+  regions.element.assign(mesh_.n_elements(), Region::far);
   for (Index e = 0; e < mesh_.n_elements(); ++e) {
     auto const corners = mesh_.elements.corners(e);
-    auto const n = std::count_if(corners.begin(), corners.end(),
-                                 [&](Index32 c) { return regions.inside[std::size_t(owner(c))] != 0; });
+    auto const n =
+        std::count_if(corners.begin(), corners.end(), [&](Index32 c) { return regions.inside[owner(c)] != 0; });
     if (n == 0) continue;
-    regions.element[std::size_t(e)] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
-    for (Index32 const c : mesh_.elements.nodes[e]) regions.near[std::size_t(c)] = 1;
+    regions.element[e] = std::size_t(n) == corners.size() ? Region::near : Region::partial;
+    for (Index32 const c : mesh_.elements.nodes[e]) regions.near[c] = 1;
   }
   regions.count();
 }
@@ -117,7 +115,7 @@ void UnstructuredPlanner::classify_by_wrap() {
   if (driving_faces_.empty()) {
     auto const n_nodes = std::size_t(mesh_.n_nodes());
     auto& regions = out_.report.regions;
-    regions.element.assign(std::size_t(mesh_.n_elements()), Region::far);
+    regions.element.assign(mesh_.n_elements(), Region::far);
     regions.near.assign(n_nodes, 0);
     regions.inside.assign(n_nodes, 0);
     regions.count();
@@ -145,7 +143,7 @@ void UnstructuredPlanner::classify_by_background() {
   Index astray = 0;
   Index32 first = -1;
   for (Index32 const n : out_.plan.driving)
-    if (!out_.report.regions.inside[std::size_t(n)] && astray++ == 0) first = n;
+    if (!out_.report.regions.inside[n] && astray++ == 0) first = n;
   if (astray > 0)
     throw MeshError("background mesh " + background.mesh.source +
                     " does not go around the moving walls: " + std::to_string(astray) + " of their " +

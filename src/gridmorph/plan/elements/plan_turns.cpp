@@ -43,7 +43,7 @@ void UnstructuredPlanner::find_turning_bodies() {
   };
   for (WallBody const& body : wall_bodies_.bodies) {
     bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
-                                     [&](Index32 n) { return modes[std::size_t(n)] == BoundaryLayer::Mode::rotate; });
+                                     [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });
     if (rotates && !body.attached)
       turning.push_back(body);
     else
@@ -102,7 +102,7 @@ void UnstructuredPlanner::add_turning_body(WallBody const& body) {
     if (k % chunk_size == 0) all.first.push_back(Index(all.wall.size()));
     auto const place = std::lower_bound(driving.begin(), driving.end(), body.nodes[k]) - driving.begin();
     all.wall.push_back(Index32(place));
-    all.slot.push_back(out_.plan.driving_slots[std::size_t(place)]);
+    all.slot.push_back(out_.plan.driving_slots[place]);
     all.weight.push_back(area[k] / sum);
     size = std::max(size, gridmorph::distance(mesh_.coordinates[body.nodes[k]], centre));
   }
@@ -118,11 +118,11 @@ void UnstructuredPlanner::add_other_boundaries() {
   TurningBodies& all = out_.plan.turns_of_bodies;
   Mask of_body = mask();
   for (WallBody const& body : wall_bodies_.bodies)
-    for (Index32 const n : body.nodes) of_body[std::size_t(n)] = 1;
+    for (Index32 const n : body.nodes) of_body[n] = 1;
   std::vector<Index32> nodes;
   for (std::size_t k = 0; k < out_.plan.known.size(); ++k) {
     Index32 const n = out_.plan.known[k];
-    if (of_body[std::size_t(n)] != 0 || is_middle_[std::size_t(n)] != 0) continue;
+    if (of_body[n] != 0 || is_middle_[n] != 0) continue;
     if (nodes.size() % chunk_size == 0) all.first.push_back(Index(all.slot.size()));
     all.slot.push_back(Index32(k));
     nodes.push_back(n);
@@ -143,8 +143,8 @@ std::vector<kernels::Quaternion<Vec3>> UnstructuredPlanner::turns_of_walls(
     std::vector<Vec3> const& displacement) const {
   using Host = Kokkos::HostSpace;
   UnstructuredPlan const& plan = out_.plan;
-  std::vector<Vec3> u(std::size_t(mesh_.n_nodes()));
-  for (std::size_t k = 0; k < plan.known.size(); ++k) u[std::size_t(plan.known[k])] = displacement[k];
+  std::vector<Vec3> u(mesh_.n_nodes());
+  for (std::size_t k = 0; k < plan.known.size(); ++k) u[plan.known[k]] = displacement[k];
   auto const view = [](auto const& list) {
     using T = typename std::decay_t<decltype(list)>::value_type;
     return Kokkos::View<T const*, Host>(list.data(), list.size());
@@ -175,7 +175,7 @@ void UnstructuredPlanner::plan_stretches() {
   // A body's shift is what it moves by beyond the mean of all other boundaries.
   Vec3 shift_of_others;
   for (std::size_t k = all.wall.size(); k < all.slot.size(); ++k)
-    shift_of_others += all.weight[k] * (*given)[std::size_t(all.slot[k])];
+    shift_of_others += all.weight[k] * (*given)[all.slot[k]];
   double reach = 0, rest_reach = 0;
   Mask of_body(given->size(), 0);
   std::size_t first = 0;
@@ -187,10 +187,10 @@ void UnstructuredPlanner::plan_stretches() {
     body_rests_[b] = stretch.largest_rest();
     if (out_.displacement) body_shifts_[b] = norm(shift - shift_of_others);
     for (std::size_t k = first; k < end; ++k) {
-      Vec3 const rest = stretch.rest(arm_in_body(b, k), (*given)[std::size_t(all.slot[k])]);
+      Vec3 const rest = stretch.rest(arm_in_body(b, k), (*given)[all.slot[k]]);
       reach = std::max(reach, norm(rest));
       rest_reach = std::max(rest_reach, norm(rest - (shift - shift_of_others)));
-      of_body[std::size_t(all.slot[k])] = 1;
+      of_body[all.slot[k]] = 1;
     }
     first = end;
   }
@@ -200,7 +200,7 @@ void UnstructuredPlanner::plan_stretches() {
   }
   if (!out_.displacement) return;
   for (std::size_t slot = 0; slot < given->size(); ++slot) {
-    if (of_body[slot] != 0 || is_middle_[std::size_t(out_.plan.known[slot])] != 0) continue;
+    if (of_body[slot] != 0 || is_middle_[out_.plan.known[slot]] != 0) continue;
     reach = std::max(reach, norm((*given)[slot]));
     rest_reach = std::max(rest_reach, norm((*given)[slot]));
   }
@@ -210,20 +210,20 @@ void UnstructuredPlanner::plan_stretches() {
 
 Vec3 UnstructuredPlanner::arm_in_body(std::size_t body, std::size_t k) const {
   TurningBodies const& all = out_.plan.turns_of_bodies;
-  return mesh_.coordinates[out_.plan.driving[std::size_t(all.wall[k])]] - all.centre[body];
+  return mesh_.coordinates[out_.plan.driving[all.wall[k]]] - all.centre[body];
 }
 
 BodyStretch UnstructuredPlanner::stretch_of(std::size_t body, std::size_t first, std::size_t end,
                                             std::vector<Vec3> const& given,
                                             std::vector<kernels::Quaternion<Vec3>> const& turn, Vec3& shift) {
   TurningBodies& all = out_.plan.turns_of_bodies;
-  auto const moved = [&](std::size_t k) { return given[std::size_t(all.slot[k])]; };
+  auto const moved = [&](std::size_t k) { return given[all.slot[k]]; };
   kernels::VectorMoments s;
   for (std::size_t k = first; k < end; ++k) {
     shift += all.weight[k] * moved(k);
     // The mean of the nodes' rotations is the one that turns unit vectors most nearly as all of them do.
     for (Vec3 const& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
-      s.add(all.weight[k] * e, e + turn[std::size_t(all.wall[k])].turned(e));
+      s.add(all.weight[k] * e, e + turn[all.wall[k]].turned(e));
   }
   BodyStretch out(all.axis[body], kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[body])), fitted_);
   for (std::size_t k = first; k < end; ++k) out.add_place(all.weight[k], arm_in_body(body, k));
@@ -240,15 +240,14 @@ BodyStretch UnstructuredPlanner::stretch_of(std::size_t body, std::size_t first,
 
 std::vector<Vec3> UnstructuredPlanner::stretched_arms() const {
   // By their lengths: at sharp edges columns lean on the wall, and are of no height above it.
-  std::vector<double> longest(std::size_t(mesh_.n_nodes()), 0);
+  std::vector<double> longest(mesh_.n_nodes(), 0);
   std::vector<Vec3> arm;
   for (std::size_t k = 0; k < columns_.node.size(); ++k) {
     auto const root = columns_.root[k];
     arm.push_back(mesh_.coordinates[columns_.node[k]] - mesh_.coordinates[root]);
-    longest[std::size_t(root)] = std::max(longest[std::size_t(root)], norm(arm.back()));
+    longest[root] = std::max(longest[root], norm(arm.back()));
   }
-  for (std::size_t k = 0; k < arm.size(); ++k)
-    arm[k] = smoothstep(norm(arm[k]) / longest[std::size_t(columns_.root[k])]) * arm[k];
+  for (std::size_t k = 0; k < arm.size(); ++k) arm[k] = smoothstep(norm(arm[k]) / longest[columns_.root[k]]) * arm[k];
   return arm;
 }
 
@@ -258,13 +257,13 @@ void UnstructuredPlanner::plan_turns() {
   if (n_bodies == 0) return;
   std::vector<Index32> body_of(n_nodes, -1);
   for (std::size_t b = 0; b < n_bodies; ++b)
-    for (Index32 const n : wall_bodies_.bodies[b].nodes) body_of[std::size_t(n)] = Index32(b);
-  for (Index32 const n : out_.plan.driving) all.body_of_driving.push_back(body_of[std::size_t(n)]);
+    for (Index32 const n : wall_bodies_.bodies[b].nodes) body_of[n] = Index32(b);
+  for (Index32 const n : out_.plan.driving) all.body_of_driving.push_back(body_of[n]);
   for (Index32 const n : out_.plan.driving)
-    if (body_of[std::size_t(n)] >= 0) all.rigid.push_back(n);
+    if (body_of[n] >= 0) all.rigid.push_back(n);
   for (std::size_t k = 0; k < columns_.node.size(); ++k)
-    if (Index32 const b = body_of[std::size_t(columns_.root[k])]; b >= 0) {
-      body_of[std::size_t(columns_.node[k])] = b;
+    if (Index32 const b = body_of[columns_.root[k]]; b >= 0) {
+      body_of[columns_.node[k]] = b;
       all.rigid.push_back(columns_.node[k]);
     }
   if (!all.lever.empty() && !fitted_) all.column_arm = stretched_arms();
@@ -283,12 +282,11 @@ void UnstructuredPlanner::plan_turns() {
   for (std::size_t n = 0; n < n_nodes; ++n)
     if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n])
       settled[n] = Settled::all;
-  for (Index32 const n : standing_.node) settled[std::size_t(n)] = Settled::all;
+  for (Index32 const n : standing_.node) settled[n] = Settled::all;
   // Where no image turns behind them periodic boundaries do not turn.
   if (moves_.size() == 1)
     for (auto const& image : out_.boundary.images)
-      for (Index32 const n : {image.node, image.owner})
-        settled[std::size_t(n)] = std::max<std::uint8_t>(settled[std::size_t(n)], Settled::turns);
+      for (Index32 const n : {image.node, image.owner}) settled[n] = std::max<std::uint8_t>(settled[n], Settled::turns);
   share_turns(settled);
 }
 

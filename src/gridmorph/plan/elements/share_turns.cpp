@@ -95,27 +95,26 @@ Places::Places(Boundaries const& b) : b_(b) {
 
 bool Places::turns_along(std::size_t body, Index32 surface) const {
   Vec3 const axis = b_.bodies[body].axis;
-  return surface >= 0 && b_.mesh.dimension == 3 && b_.surfaces[std::size_t(surface)].kind == SlipSurface::Kind::plane &&
-         dot(axis, axis) > 0 && are_parallel(b_.surfaces[std::size_t(surface)].direction, axis);
+  return surface >= 0 && b_.mesh.dimension == 3 && b_.surfaces[surface].kind == SlipSurface::Kind::plane &&
+         dot(axis, axis) > 0 && are_parallel(b_.surfaces[surface].direction, axis);
 }
 
 void Places::add_resting_faces() {
   groups_.resize(2);
   for (Index f = 0; f < b_.resting.faces.size(); ++f) {
     // Images turn behind them.
-    if (b_.moves.size() > 1 && b_.resting.periodic[std::size_t(f)] != 0) continue;
-    Index32 const s = b_.resting.slides_on[std::size_t(f)];
+    if (b_.moves.size() > 1 && b_.resting.periodic[f] != 0) continue;
+    Index32 const s = b_.resting.slides_on[f];
     bool own = false;
     for (std::size_t b = 0; b < b_.bodies.size(); ++b) own = own || turns_along(b, s);
-    std::size_t g = b_.resting.given[std::size_t(f)] != 0 ? given : crosswise;
+    std::size_t g = b_.resting.given[f] != 0 ? given : crosswise;
     if (own) {
       for (g = 2; g < groups_.size() && groups_[g].surface != s;) ++g;
       if (g == groups_.size()) groups_.emplace_back().surface = s;
     }
     groups_[g].faces.add(b_.resting.faces[f]);
     for (Index32 const n : b_.resting.faces[f])
-      groups_[g].layer =
-          std::max({groups_[g].layer, b_.standing_height[std::size_t(n)], b_.column_height[std::size_t(n)]});
+      groups_[g].layer = std::max({groups_[g].layer, b_.standing_height[n], b_.column_height[n]});
     groups_[g].columns = groups_[g].layer;
   }
   for (FaceGroup const& g : groups_) from_.emplace_back(b_.mesh.coordinates, g.faces);
@@ -134,7 +133,7 @@ void Places::add_bodies() {
         edges.back() +=
             gridmorph::distance(b_.mesh.coordinates[face[k]], b_.mesh.coordinates[face[(k + 1) % face.size()]]);
     }
-    for (Index32 const n : body.nodes) g.columns = std::max(g.columns, b_.column_height[std::size_t(n)]);
+    for (Index32 const n : body.nodes) g.columns = std::max(g.columns, b_.column_height[n]);
     // Without columns the first cells turn with the wall, about as high as its faces are long.
     g.layer = g.columns > 0 ? g.columns : edges.back() / double(n_edges);
     from_.emplace_back(b_.mesh.coordinates, g.faces);

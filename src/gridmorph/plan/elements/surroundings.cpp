@@ -75,7 +75,7 @@ Surroundings::Surroundings(HostInstance const& host, Coordinates const& coordina
   detail::for_all_parts(host, "gridmorph::surroundings", Index(n), [&](Index j) {
     std::vector<int> start(n_walls_, 0);
     for (std::size_t i = 0; i < n; ++i) {
-      Vec3 const p = centre_ + Vec3{planes_[i], planes_[std::size_t(j)], 0};
+      Vec3 const p = centre_ + Vec3{planes_[i], planes_[j], 0};
       for (std::size_t s = 0; s < n_walls_; ++s) {
         double closeness = 0, softened = 0;
         for (Source const& source : all[s]) {

@@ -21,7 +21,7 @@ struct Level {
 Level level_of(Tube const& tube, double s) {
   auto const above = std::upper_bound(tube.station.begin() + 1, tube.station.end() - 1, s);
   int const j = int(above - tube.station.begin()) - 1;
-  double const from = tube.station[std::size_t(j)], to = tube.station[std::size_t(j) + 1];
+  double const from = tube.station[j], to = tube.station[j + 1];
   return {j, std::clamp((s - from) / (to - from), 0.0, 1.0)};
 }
 
@@ -34,7 +34,7 @@ constexpr double ring_start = -0.75 * std::numbers::pi;  ///< direction of a rin
 double Tube::largest_radius() const {
   double largest = 0;
   for (int j = 0; j < sections(); ++j)
-    for (int k = 0; k < around; ++k) largest = std::max(largest, distance(point(j, k), centre[std::size_t(j)]));
+    for (int k = 0; k < around; ++k) largest = std::max(largest, distance(point(j, k), centre[j]));
   return largest;
 }
 
@@ -44,7 +44,7 @@ bool Tube::contains(Vec3 const& p) const {
   Level const level = level_of(*this, s);
   int const j = level.section;
   double const t = level.t;
-  Vec3 const c = between(centre[std::size_t(j)], centre[std::size_t(j) + 1], t);
+  Vec3 const c = between(centre[j], centre[j + 1], t);
   double const a = dot(p - c, u), b = dot(p - c, v);
   auto corner = [&](int k) {
     Vec3 const d = between(point(j, k), point(j + 1, k), t) - c;
@@ -70,9 +70,8 @@ bool Tube::meets(LatticeBox const& box) const {
   for (int j = first; j < last && !close; ++j) {
     double radius = 0;
     for (int k = 0; k < around; ++k)
-      radius = std::max({radius, distance(point(j, k), centre[std::size_t(j)]),
-                         distance(point(j + 1, k), centre[std::size_t(j) + 1])});
-    Vec3 const from = centre[std::size_t(j)], along = centre[std::size_t(j) + 1] - from;
+      radius = std::max({radius, distance(point(j, k), centre[j]), distance(point(j + 1, k), centre[j + 1])});
+    Vec3 const from = centre[j], along = centre[j + 1] - from;
     double const t = std::clamp(dot(middle - from, along) / dot(along, along), 0.0, 1.0);
     close = distance(middle, from + t * along) <= radius + reach;
   }
@@ -86,7 +85,7 @@ bool Tube::meets(LatticeBox const& box) const {
     return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
   };
   for (int j = first; j <= last; ++j) {
-    if (in_box(centre[std::size_t(j)])) return true;
+    if (in_box(centre[j])) return true;
     for (int k = 0; k < around; ++k)
       if (in_box(point(j, k))) return true;
   }
@@ -227,7 +226,7 @@ class Fitter {
     double uu = 0, uv = 0, vv = 0, area = 0;
     faces_.for_all([&](auto const&, Vec3 const& middle, double a) {
       auto const [j, t] = level_of(tube_, dot(middle, tube_.axis));
-      Vec3 const d = middle - between(tube_.centre[std::size_t(j)], tube_.centre[std::size_t(j) + 1], t);
+      Vec3 const d = middle - between(tube_.centre[j], tube_.centre[j + 1], t);
       double const x = dot(d, tube_.u), y = dot(d, tube_.v);
       uu += a * x * x;
       uv += a * x * y;
@@ -266,7 +265,7 @@ class Fitter {
     auto include = [&](Vec3 const& p, std::size_t section) {
       // Between sections that are not above one another, the centre line there is what rings are interpolated about.
       auto const [at, t] = level_of(tube_, dot(p, tube_.axis));
-      Vec3 const c = between(tube_.centre[std::size_t(at)], tube_.centre[std::size_t(at) + 1], t);
+      Vec3 const c = between(tube_.centre[at], tube_.centre[at + 1], t);
       auto const w = unstretched(dot(p - c, tube_.u), dot(p - c, tube_.v));
       for (std::size_t m = 0; m < directions; ++m) {
         double& h = support[section * directions + m];
@@ -274,7 +273,7 @@ class Fitter {
       }
     };
     // Nodes of faces between two sections count for these, once; longer faces for all sections they pass.
-    std::vector<char> done(std::size_t(faces_.mesh.n_nodes()), 0);
+    std::vector<char> done(faces_.mesh.n_nodes(), 0);
     std::vector<Vec3> corners;
     for (CsrGraph const& list : faces_.walls)
       for (Index f = 0; f < list.size(); ++f) {
@@ -282,7 +281,7 @@ class Fitter {
         for (Index32 const node : list[f]) corners.push_back(faces_.mesh.coordinates[node]);
         auto const [first, last] = sections_of(corners);
         for (std::size_t c = 0; c < corners.size(); ++c) {
-          char& seen = done[std::size_t(list[f][c])];
+          char& seen = done[list[f][c]];
           if (last - first == 1 && seen != 0) continue;
           if (last - first == 1) seen = 1;
           for (int j = first; j <= last; ++j) include(corners[c], std::size_t(j));
@@ -320,7 +319,7 @@ class Fitter {
     for (int k = 0; k < ring_points; ++k) {
       radius[k] = 0;
       for (int step = -per_side; step <= per_side; ++step)
-        radius[k] = std::max(radius[k], hull[std::size_t((k * per_side + step + directions) % directions)]);
+        radius[k] = std::max(radius[k], hull[(k * per_side + step + directions) % directions]);
       radius[k] /= std::cos(std::numbers::pi / ring_points);
     }
   }

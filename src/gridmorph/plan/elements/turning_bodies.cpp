@@ -14,12 +14,12 @@ struct NodeKinds {
   std::vector<Index32> slip;  ///< number in BoundaryConditions::slip_nodes
 
   NodeKinds(Index n_nodes, BoundaryConditions const& b) : kind(std::size_t(n_nodes), none), slip(kind.size(), -1) {
-    for (auto const& image : b.images) kind[std::size_t(image.node)] = kind[std::size_t(image.owner)] = periodic;
+    for (auto const& image : b.images) kind[image.node] = kind[image.owner] = periodic;
     for (std::size_t k = 0; k < b.slip_nodes.size(); ++k) {
-      kind[std::size_t(b.slip_nodes[k])] = slips;
-      slip[std::size_t(b.slip_nodes[k])] = Index32(k);
+      kind[b.slip_nodes[k]] = slips;
+      slip[b.slip_nodes[k]] = Index32(k);
     }
-    for (std::size_t k = 0; k < b.known.size(); ++k) kind[std::size_t(b.known[k])] = b.drives[k] ? drives : given;
+    for (std::size_t k = 0; k < b.known.size(); ++k) kind[b.known[k]] = b.drives[k] ? drives : given;
   }
 };
 
@@ -33,8 +33,8 @@ struct OtherFace {
   OtherFace(std::vector<Index32> const& nodes, NodeKinds const& all, BoundaryConditions const& b) {
     std::size_t count[5] = {}, fewest = 0;
     for (Index32 const n : nodes) {
-      ++count[all.kind[std::size_t(n)]];
-      if (Index32 const s = all.slip[std::size_t(n)]; s >= 0 && all.kind[std::size_t(n)] == NodeKinds::slips) {
+      ++count[all.kind[n]];
+      if (Index32 const s = all.slip[n]; s >= 0 && all.kind[n] == NodeKinds::slips) {
         auto const surfaces = b.slip_surfaces[s];
         if (surfaces.empty() || (fewest > 0 && surfaces.size() >= fewest)) continue;
         fewest = surfaces.size();
@@ -68,45 +68,43 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
   std::vector<Index32> nodes;
   auto const nodes_of = [&](Index f) -> std::vector<Index32> const& {
     nodes.clear();
-    for (Index32 const n : topology.boundary.nodes[f]) nodes.push_back(graph.representative[std::size_t(n)]);
+    for (Index32 const n : topology.boundary.nodes[f]) nodes.push_back(graph.representative[n]);
     return nodes;
   };
   DisjointSets<Index32> touching(std::size_t(mesh.n_nodes()));
   for (Index32 const f : driving_faces)
     for (Index32 const n : nodes_of(f)) touching.join(nodes.front(), n);
   // Counted from 0 in the order of their smallest nodes.
-  std::vector<Index32> body_of(std::size_t(mesh.n_nodes()), -1), body_of_root(body_of.size(), -1);
-  std::vector<std::uint8_t> of_wall(std::size_t(topology.boundary.size()), 0);
+  std::vector<Index32> body_of(mesh.n_nodes(), -1), body_of_root(body_of.size(), -1);
+  std::vector<std::uint8_t> of_wall(topology.boundary.size(), 0);
   for (Index32 const f : driving_faces) {
-    of_wall[std::size_t(f)] = 1;
-    for (Index32 const n : nodes_of(f)) body_of[std::size_t(n)] = 0;
+    of_wall[f] = 1;
+    for (Index32 const n : nodes_of(f)) body_of[n] = 0;
   }
   for (std::size_t n = 0; n < body_of.size(); ++n) {
     if (body_of[n] < 0) continue;
-    Index32& number = body_of_root[std::size_t(touching.root(Index32(n)))];
+    Index32& number = body_of_root[touching.root(Index32(n))];
     if (number < 0) {
       number = Index32(out.bodies.size());
       out.bodies.emplace_back();
       if (mesh.dimension == 2) out.bodies.back().axis = plane_normal;
     }
     body_of[n] = number;
-    out.bodies[std::size_t(number)].nodes.push_back(Index32(n));
+    out.bodies[number].nodes.push_back(Index32(n));
   }
-  for (Index32 const f : driving_faces)
-    out.bodies[std::size_t(body_of[std::size_t(nodes_of(f).front())])].faces.push_back(f);
+  for (Index32 const f : driving_faces) out.bodies[body_of[nodes_of(f).front()]].faces.push_back(f);
   NodeKinds const kinds(mesh.n_nodes(), boundary);
   // Those of periodic connections that a rule moves are given, and no less a boundary than those that move freely.
   std::vector<std::uint8_t> paired = periodic_nodes(mesh);
   for (std::size_t n = 0; n < paired.size(); ++n)
-    if (paired[n] != 0) paired[std::size_t(graph.representative[n])] = 1;
+    if (paired[n] != 0) paired[graph.representative[n]] = 1;
   for (Index f = 0; f < topology.boundary.size(); ++f) {
-    if (of_wall[std::size_t(f)] != 0) continue;
+    if (of_wall[f] != 0) continue;
     nodes_of(f);
-    bool const between_zones =
-        face_patches.patch[std::size_t(f)] == BoundaryFacePatches::connection &&
-        !std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) {
-          return kinds.kind[std::size_t(n)] == NodeKinds::periodic || paired[std::size_t(n)] != 0;
-        });
+    bool const between_zones = face_patches.patch[f] == BoundaryFacePatches::connection &&
+                               !std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) {
+                                 return kinds.kind[n] == NodeKinds::periodic || paired[n] != 0;
+                               });
     if (between_zones) continue;
     OtherFace const face(nodes, kinds, boundary);
     bool const slips = face.kind == OtherFace::Kind::slipping;
@@ -115,16 +113,15 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
       out.resting.slides_on.push_back(slips ? face.surface : -1);
       out.resting.given.push_back(face.given ? 1 : 0);
       bool const periodic =
-          std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) { return paired[std::size_t(n)] != 0; }) &&
-          std::any_of(nodes.begin(), nodes.end(),
-                      [&](Index32 n) { return kinds.kind[std::size_t(n)] == NodeKinds::periodic; });
+          std::all_of(nodes.begin(), nodes.end(), [&](Index32 n) { return paired[n] != 0; }) &&
+          std::any_of(nodes.begin(), nodes.end(), [&](Index32 n) { return kinds.kind[n] == NodeKinds::periodic; });
       out.resting.periodic.push_back(periodic ? 1 : 0);
     }
     for (Index32 const n : nodes) {
-      if (body_of[std::size_t(n)] < 0) continue;
-      WallBody& body = out.bodies[std::size_t(body_of[std::size_t(n)])];
-      if (slips && surfaces[std::size_t(face.surface)].kind == SlipSurface::Kind::plane)
-        limit_to(surfaces[std::size_t(face.surface)].direction, body);
+      if (body_of[n] < 0) continue;
+      WallBody& body = out.bodies[body_of[n]];
+      if (slips && surfaces[face.surface].kind == SlipSurface::Kind::plane)
+        limit_to(surfaces[face.surface].direction, body);
       else
         body.attached = true;
     }

@@ -76,7 +76,7 @@ class UnstructuredPlanner {
   }
 
   [[nodiscard]] Mask mask() const { return Mask(std::size_t(mesh_.n_nodes()), 0); }
-  [[nodiscard]] Index32 owner(Index32 n) const { return out_.graph.representative[std::size_t(n)]; }
+  [[nodiscard]] Index32 owner(Index32 n) const { return out_.graph.representative[n]; }
 
   // make_unstructured_plan.cpp
   void take_boundary();

@@ -41,8 +41,8 @@ class Spreading {
   NearestSource run() {
     std::vector<Change> changes;
     for (std::size_t s = 0; s < sources_.size(); ++s)
-      if (source_[std::size_t(sources_[s])] == none_.source) {
-        source_[std::size_t(sources_[s])] = Index32(s);
+      if (source_[sources_[s]] == none_.source) {
+        source_[sources_[s]] = Index32(s);
         changes.push_back({sources_[s], {0, Index32(s)}});
       }
     while (!changes.empty()) {
@@ -55,9 +55,9 @@ class Spreading {
     out.source.resize(source_.size());
     out.distance.resize(source_.size());
     detail::for_all(host_, "gridmorph::nearest_source::write", std::ssize(source_), [&](Index n) {
-      Index32 const s = source_[std::size_t(n)];
-      out.source[std::size_t(n)] = s == none_.source ? -1 : sources_[std::size_t(s)];
-      out.distance[std::size_t(n)] = std::sqrt(squared_[std::size_t(n)]);
+      Index32 const s = source_[n];
+      out.source[n] = s == none_.source ? -1 : sources_[s];
+      out.distance[n] = std::sqrt(squared_[n]);
     });
     return out;
   }
@@ -73,7 +73,7 @@ class Spreading {
   static constexpr double clearly_more = (1 + 1e-4) * (1 + 1e-4), clearly_less = (1 - 1e-4) * (1 - 1e-4);
 
   [[nodiscard]] double squared(Vec3 const& x, Index32 source) const {
-    Vec3 const d = x - place_[std::size_t(source)];
+    Vec3 const d = x - place_[source];
     return dot(d, d);
   }
 
@@ -84,16 +84,16 @@ class Spreading {
     if (a.squared < than.squared * clearly_less) return true;
     double const d = is_before_.rounded_steps(std::sqrt(a.squared)),
                  other = is_before_.rounded_steps(std::sqrt(than.squared));
-    return d < other || (d == other && is_before_(sources_[std::size_t(a.source)], sources_[std::size_t(than.source)]));
+    return d < other || (d == other && is_before_(sources_[a.source], sources_[than.source]));
   }
 
   /// The best of what a node has and of what its neighbours have.
   [[nodiscard]] Found best(Index32 node) const {
     Vec3 const x = coordinates_[node];
-    Found nearest{squared_[std::size_t(node)], source_[std::size_t(node)]};
+    Found nearest{squared_[node], source_[node]};
     Index32 last = none_.source;  // many neighbours have the same one
     for (Index32 const m : graph_.neighbours[node]) {
-      Index32 const s = source_[std::size_t(m)];
+      Index32 const s = source_[m];
       if (s == none_.source || s == nearest.source || s == last) continue;
       last = s;
       if (Found const there{squared(x, s), s}; is_better(there, nearest)) nearest = there;
@@ -105,9 +105,9 @@ class Spreading {
   template <class Item, class List>
   std::vector<Item> gather(char const* label, Index count, List const& list) {
     constexpr Index part = 256;
-    std::vector<std::vector<Item>> lists(std::size_t((count + part - 1) / part));
+    std::vector<std::vector<Item>> lists((count + part - 1) / part);
     auto const one = [&](Index p) {
-      for (Index k = p * part; k < std::min(count, (p + 1) * part); ++k) list(k, lists[std::size_t(p)]);
+      for (Index k = p * part; k < std::min(count, (p + 1) * part); ++k) list(k, lists[p]);
     };
     if (lists.empty()) return {};
     if (lists.size() == 1) {
@@ -125,9 +125,9 @@ class Spreading {
 
   void take(std::vector<Change> const& changes) {
     detail::for_all(host_, "gridmorph::nearest_source::take", std::ssize(changes), [&](Index k) {
-      auto const& [node, found] = changes[std::size_t(k)];
-      source_[std::size_t(node)] = found.source;
-      squared_[std::size_t(node)] = found.squared;
+      auto const& [node, found] = changes[k];
+      source_[node] = found.source;
+      squared_[node] = found.squared;
     });
     ++sweep_;
   }
@@ -137,20 +137,20 @@ class Spreading {
     std::vector<Change> out;
     auto const offered = gather<Change>(
         "gridmorph::nearest_source::spread", std::ssize(changes), [&](Index k, std::vector<Change>& out) {
-          Index32 const source = changes[std::size_t(k)].found.source;
-          for (Index32 const m : graph_.neighbours[changes[std::size_t(k)].node]) {
-            Found const own{squared_[std::size_t(m)], source_[std::size_t(m)]};
+          Index32 const source = changes[k].found.source;
+          for (Index32 const m : graph_.neighbours[changes[k].node]) {
+            Found const own{squared_[m], source_[m]};
             if (own.source == source || own.squared == 0) continue;
             Found const offer{squared(coordinates_[m], source), source};
             if (own.source == none_.source && offer.squared > reach_) {
-              std::atomic_ref<Waits> const waits(waits_[std::size_t(m)]);
+              std::atomic_ref<Waits> const waits(waits_[m]);
               if (waits.load(std::memory_order_relaxed) != Waits::offered_more &&
                   waits.exchange(Waits::offered_more, std::memory_order_relaxed) == Waits::no)
                 out.push_back({m, none_});
               continue;
             }
             if (own.source != none_.source && !is_better(offer, own)) continue;
-            std::atomic_ref<Index32> const listed(listed_[std::size_t(m)]);
+            std::atomic_ref<Index32> const listed(listed_[m]);
             // A node beside several changes is listed once. Whichever comes first does it: best() looks at all
             // neighbours.
             if (listed.load(std::memory_order_relaxed) == sweep_ ||
@@ -166,9 +166,9 @@ class Spreading {
   /// What comes next when all within reach is known: the nearest of the nodes that wait, and those hardly further away.
   [[nodiscard]] std::vector<Change> go_further() {
     detail::for_all(host_, "gridmorph::nearest_source::go_further", std::ssize(waiting_), [&](Index k) {
-      auto& [node, found] = waiting_[std::size_t(k)];
-      Waits& waits = waits_[std::size_t(node)];
-      if (source_[std::size_t(node)] != none_.source)
+      auto& [node, found] = waiting_[k];
+      Waits& waits = waits_[node];
+      if (source_[node] != none_.source)
         found = none_;
       else if (waits == Waits::offered_more)
         found = best(node);
@@ -192,16 +192,16 @@ class Spreading {
   /// may not have got through.
   void descend() {
     std::vector<Index32> place(source_.size(), none_.source), row;
-    for (std::size_t s = 0; s < sources_.size(); ++s) place[std::size_t(sources_[s])] = Index32(s);
+    for (std::size_t s = 0; s < sources_.size(); ++s) place[sources_[s]] = Index32(s);
     CsrGraph beside;
     for (Index32 const s : sources_) {
       row.clear();
       for (Index32 const m : graph_.neighbours[s])
-        if (place[std::size_t(m)] != none_.source) row.push_back(place[std::size_t(m)]);
+        if (place[m] != none_.source) row.push_back(place[m]);
       beside.add(row);
     }
     detail::for_all(host_, "gridmorph::nearest_source::descend", std::ssize(source_), [&](Index n) {
-      Found own{squared_[std::size_t(n)], source_[std::size_t(n)]};
+      Found own{squared_[n], source_[n]};
       if (own.source == none_.source || own.squared == 0) return;
       Vec3 const x = coordinates_[n];
       for (Index32 before = none_.source; before != own.source;) {
@@ -209,8 +209,8 @@ class Spreading {
         for (Index32 const m : beside[before])
           if (Found const there{squared(x, m), m}; is_better(there, own)) own = there;
       }
-      squared_[std::size_t(n)] = own.squared;
-      source_[std::size_t(n)] = own.source;
+      squared_[n] = own.squared;
+      source_[n] = own.source;
     });
   }
 

@@ -45,7 +45,7 @@ void mark(Coordinates const& coordinates, std::span<CsrGraph const> walls, detai
       for (int k = first[2]; k <= last[2]; ++k)
         for (int j = first[1]; j <= last[1]; ++j)
           for (int i = first[0]; i <= last[0]; ++i) {
-            std::uint8_t& inside = wrap.inside[std::size_t(wrap.cell({i, j, k}))];
+            std::uint8_t& inside = wrap.inside[wrap.cell({i, j, k})];
             if (inside == 0 && detail::polygon_meets_box(p, wrap.box({i, j, k}), reach)) inside = 1;
           }
     }
@@ -54,8 +54,8 @@ void mark(Coordinates const& coordinates, std::span<CsrGraph const> walls, detai
 /// sum(i, j, k): inside cells with indices below i, j and k.
 void add_up(Wrap& wrap) {
   Index const ni = wrap.cells(0) + 1, nj = wrap.cells(1) + 1, nk = wrap.cells(2) + 1;
-  wrap.sum.assign(std::size_t(ni * nj * nk), 0);
-  auto at = [&](Index i, Index j, Index k) -> std::int32_t& { return wrap.sum[std::size_t(i + ni * (j + nj * k))]; };
+  wrap.sum.assign(ni * nj * nk, 0);
+  auto at = [&](Index i, Index j, Index k) -> std::int32_t& { return wrap.sum[i + ni * (j + nj * k)]; };
   for (Index k = 1; k < nk; ++k)
     for (Index j = 1; j < nj; ++j)
       for (Index i = 1; i < ni; ++i)
@@ -89,14 +89,14 @@ Wrap around(Tube tube, LatticeBox const& domain, WrapOptions const& options) {
 LatticeBox Wrap::box(Index3 const& c) const {
   LatticeBox box;
   for (std::size_t a = 0; a < 3; ++a) {
-    box.low[a] = planes[a][std::size_t(c[a])];
+    box.low[a] = planes[a][c[a]];
     box.high[a] = planes[a][std::size_t(c[a]) + 1];
   }
   return box;
 }
 
 int Wrap::interval(int axis, double coordinate) const {
-  auto const& p = planes[std::size_t(axis)];
+  auto const& p = planes[axis];
   auto const above = std::upper_bound(p.begin() + 1, p.end() - 1, coordinate);
   return int(above - p.begin()) - 1;
 }
@@ -117,7 +117,7 @@ bool Wrap::meets(LatticeBox const& box) const {
     ++last[s];
   }
   Index const ni = cells(0) + 1, nj = cells(1) + 1;
-  auto at = [&](Index i, Index j, Index k) { return sum[std::size_t(i + ni * (j + nj * k))]; };
+  auto at = [&](Index i, Index j, Index k) { return sum[i + ni * (j + nj * k)]; };
   auto below = [&](Index k) {
     return at(last[0], last[1], k) - at(first[0], last[1], k) - at(last[0], first[1], k) + at(first[0], first[1], k);
   };

@@ -83,7 +83,7 @@ struct Wrap {
   std::string note;                  ///< why it is not the tube that was asked for
   std::vector<std::int32_t> sum;     ///< inside cells below each lattice node: what meets() looks up
 
-  [[nodiscard]] int cells(int axis) const { return int(planes[std::size_t(axis)].size()) - 1; }
+  [[nodiscard]] int cells(int axis) const { return int(planes[axis].size()) - 1; }
   [[nodiscard]] Index n_cells() const { return Index(cells(0)) * cells(1) * cells(2); }
   [[nodiscard]] Index cell(Index3 const& c) const { return c[0] + Index(cells(0)) * (c[1] + Index(cells(1)) * c[2]); }
   [[nodiscard]] Index3 index(Index cell) const {
@@ -92,8 +92,8 @@ struct Wrap {
   /// Whether a cell is inside the wrap; false for what is no cell.
   [[nodiscard]] bool is_inside(Index3 const& c) const {
     for (int a = 0; a < 3; ++a)
-      if (c[std::size_t(a)] < 0 || c[std::size_t(a)] >= cells(a)) return false;
-    return inside[std::size_t(cell(c))] != 0;
+      if (c[a] < 0 || c[a] >= cells(a)) return false;
+    return inside[cell(c)] != 0;
   }
   /// Whether a cell is one of the outermost, which stay free.
   [[nodiscard]] bool is_outermost(Index3 const& c) const {

@@ -35,11 +35,11 @@ class Filler {
   }
   bool add(Index3 const& c) {
     if (wrap_.is_outermost(c) || wrap_.is_inside(c)) return false;
-    wrap_.inside[std::size_t(wrap_.cell(c))] = 1;
+    wrap_.inside[wrap_.cell(c)] = 1;
     return true;
   }
   static Index3 shifted(Index3 c, int axis, int by) {
-    c[std::size_t(axis)] += by;
+    c[axis] += by;
     return c;
   }
 
@@ -60,7 +60,7 @@ class Filler {
 
   [[nodiscard]] double size(Index3 const& c, int axis) const {
     LatticeBox const box = wrap_.box(c);
-    return box.high[std::size_t(axis)] - box.low[std::size_t(axis)];
+    return box.high[axis] - box.low[axis];
   }
 
   /// Cells with the wrap on all sides but two (one in 2-D), in rounds.
@@ -126,15 +126,15 @@ class Filler {
 
   /// Parts of the outside, within the limits of the mesh, that are closed off.
   bool fill_hollows() {
-    std::vector<int> part(std::size_t(wrap_.n_cells()), -1);
+    std::vector<int> part(wrap_.n_cells(), -1);
     std::vector<char> open, at_limit;
     std::vector<Index> stack;
     for (Index seed = 0; seed < wrap_.n_cells(); ++seed) {
-      if (!takes_part(wrap_.index(seed)) || part[std::size_t(seed)] >= 0) continue;
+      if (!takes_part(wrap_.index(seed)) || part[seed] >= 0) continue;
       int const number = int(open.size());
       open.push_back(0);
       at_limit.push_back(0);
-      part[std::size_t(seed)] = number;
+      part[seed] = number;
       stack.push_back(seed);
       while (!stack.empty()) {
         Index3 const c = wrap_.index(stack.back());
@@ -150,8 +150,8 @@ class Filler {
               continue;
             }
             Index const n = wrap_.cell(next);
-            if (wrap_.is_inside(next) || part[std::size_t(n)] >= 0) continue;
-            part[std::size_t(n)] = number;
+            if (wrap_.is_inside(next) || part[n] >= 0) continue;
+            part[n] = number;
             stack.push_back(n);
           }
       }
@@ -159,8 +159,7 @@ class Filler {
     find_nodes(part, at_limit, open);
     bool changed = false;
     for (Index n = 0; n < wrap_.n_cells(); ++n)
-      if (part[std::size_t(n)] >= 0 && open[std::size_t(part[std::size_t(n)])] == 0)
-        changed = add(wrap_.index(n)) || changed;
+      if (part[n] >= 0 && open[part[n]] == 0) changed = add(wrap_.index(n)) || changed;
     return changed;
   }
 
@@ -175,9 +174,9 @@ class Filler {
     Index missing = 0;
     for (std::size_t p = 0; p < open.size(); ++p) missing += at_limit[p] != 0 && open[p] == 0 ? 1 : 0;
     for (Index n = 0; n < coordinates_.size() && missing > 0; ++n) {
-      int const p = part[std::size_t(wrap_.cell(wrap_.find(coordinates_[n])))];
-      if (p < 0 || at_limit[std::size_t(p)] == 0 || open[std::size_t(p)] != 0) continue;
-      open[std::size_t(p)] = 1;
+      int const p = part[wrap_.cell(wrap_.find(coordinates_[n]))];
+      if (p < 0 || at_limit[p] == 0 || open[p] != 0) continue;
+      open[p] = 1;
       --missing;
     }
   }

@@ -201,7 +201,7 @@ Wrap make_lattice(Mesh const& mesh, Coordinates const& coordinates, std::span<Cs
       wrap.layer = std::min(wrap.layer, size);
     }
   if (mesh.dimension == 2) wrap.planes[2] = {-0.5 * wrap.spacing, 0.5 * wrap.spacing};
-  wrap.inside.assign(std::size_t(wrap.n_cells()), 0);
+  wrap.inside.assign(wrap.n_cells(), 0);
   return wrap;
 }
 

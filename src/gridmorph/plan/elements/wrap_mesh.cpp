@@ -25,7 +25,7 @@ Mesh tube_mesh(Tube const& tube) {
   auto centre = [&](int j) { return Index32(j * stride); };
   auto ring = [&](int j, int k) { return Index32(j * stride + 1 + k % around); };
   for (int j = 0; j < n; ++j) {
-    mesh.coordinates.set(centre(j), tube.centre[std::size_t(j)]);
+    mesh.coordinates.set(centre(j), tube.centre[j]);
     for (int k = 0; k < around; ++k) mesh.coordinates.set(ring(j, k), tube.point(j, k));
     for (int k = 0; k < around; ++k) {
       if (j == 0 || j == n - 1) {
@@ -53,31 +53,30 @@ Mesh wrap_mesh(Wrap const& wrap) {
   mesh.source = "wrap";
   bool const flat = wrap.dimension == 2;
   Index const ni = wrap.cells(0) + 1, nj = wrap.cells(1) + 1, nk = flat ? 1 : wrap.cells(2) + 1;
-  std::vector<Index32> number(std::size_t(ni * nj * nk), -1);
+  std::vector<Index32> number(ni * nj * nk, -1);
   std::vector<Vec3> points;
   auto node = [&](int i, int j, int k) {
-    Index32& n = number[std::size_t(i + ni * (j + nj * k))];
+    Index32& n = number[i + ni * (j + nj * k)];
     if (n < 0) {
       n = Index32(points.size());
-      points.push_back(wrap.domain.chart.place({wrap.planes[0][std::size_t(i)], wrap.planes[1][std::size_t(j)],
-                                                flat ? 0.0 : wrap.planes[2][std::size_t(k)]}));
+      points.push_back(wrap.domain.chart.place({wrap.planes[0][i], wrap.planes[1][j], flat ? 0.0 : wrap.planes[2][k]}));
     }
     return n;
   };
   Patch surface = wrap_patch();
   std::vector<std::array<Index32, 8>> hexahedra;
   for (Index c = 0; c < wrap.n_cells(); ++c) {
-    if (wrap.inside[std::size_t(c)] == 0) continue;
+    if (wrap.inside[c] == 0) continue;
     Index3 const at = wrap.index(c);
     auto const [i, j, k] = at;
     // Corner (a, b, c) of the cell at 4 c + 2 b + a.
     std::array<Index32, 8> corner{};
-    for (int n = 0; n < (flat ? 4 : 8); ++n) corner[std::size_t(n)] = node(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
+    for (int n = 0; n < (flat ? 4 : 8); ++n) corner[n] = node(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
     hexahedra.push_back({corner[0], corner[1], corner[3], corner[2], corner[4], corner[5], corner[7], corner[6]});
     for (int axis = 0; axis < wrap.dimension; ++axis)
       for (int const side : {0, 1}) {
         Index3 beyond = at;
-        beyond[std::size_t(axis)] += 2 * side - 1;
+        beyond[axis] += 2 * side - 1;
         if (wrap.is_inside(beyond)) continue;
         std::size_t const fixed = std::size_t(side) << axis, u = std::size_t(axis == 0 ? 2 : 1),
                           v = std::size_t(axis == 2 ? 2 : 4);

@@ -10,8 +10,8 @@ namespace {
 
 std::optional<LinkedFace> linked_face(Mesh const& mesh, int zone, IndexRange const& range, int donor_zone,
                                       IndexMap const& to_donor) {
-  Zone const& own = mesh.zones[std::size_t(zone)];
-  Zone const& donor = mesh.zones[std::size_t(donor_zone)];
+  Zone const& own = mesh.zones[zone];
+  Zone const& donor = mesh.zones[donor_zone];
   auto const face = face_of(own, range);
   auto const donor_face = face_of(donor, to_donor(range));
   if (!face || !donor_face) return std::nullopt;
@@ -24,11 +24,11 @@ std::optional<LinkedFace> linked_face(Mesh const& mesh, int zone, IndexRange con
     bool const across = a == face->axis;
     out.begin[a] = !across ? range.begin[a] : face->side == 0 ? 0 : own.extent[a] - 2;
     out.end[a] = across ? out.begin[a] + 1 : range.end[a] - 1;
-    out.donor_stride[a] = strides[std::size_t(a)];
-    out.to_axis[a] = to_donor.orientation.axis[std::size_t(a)];
-    out.to_sign[a] = to_donor.orientation.sign[std::size_t(a)];
-    out.own_origin[a] = to_donor.own_origin[std::size_t(a)];
-    out.donor_origin[a] = to_donor.donor_origin[std::size_t(a)];
+    out.donor_stride[a] = strides[a];
+    out.to_axis[a] = to_donor.orientation.axis[a];
+    out.to_sign[a] = to_donor.orientation.sign[a];
+    out.own_origin[a] = to_donor.own_origin[a];
+    out.donor_origin[a] = to_donor.donor_origin[a];
   }
   out.into_donor = donor_face->side == 0 ? 0 : -1;
   return out;
@@ -40,9 +40,9 @@ LinkedFaceTable linked_face_table(Mesh const& mesh) {
   std::vector<std::vector<LinkedFace>> of_zone(mesh.zones.size());
   for (Interface1to1 const& f : mesh.interfaces) {
     if (auto const face = linked_face(mesh, f.zone, f.range, f.donor_zone, f.to_donor))
-      of_zone[std::size_t(f.zone)].push_back(*face);
+      of_zone[f.zone].push_back(*face);
     if (auto const face = linked_face(mesh, f.donor_zone, f.to_donor(f.range), f.zone, f.to_donor.inverse()))
-      of_zone[std::size_t(f.donor_zone)].push_back(*face);
+      of_zone[f.donor_zone].push_back(*face);
   }
   LinkedFaceTable out;
   for (auto const& list : of_zone) {

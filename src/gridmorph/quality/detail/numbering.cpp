@@ -33,14 +33,14 @@ class Numbering {
         fill(zone, -1);
       else
         for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e)
-          if (sign_[std::size_t(e)] == 0) follow(e);
+          if (sign_[e] == 0) follow(e);
     }
     return std::move(sign_);
   }
 
  private:
   void fill(Zone const& zone, signed char sign) {
-    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) sign_[std::size_t(e)] = sign;
+    for (Index e = zone.first_element; e < zone.first_element + zone.n_elements; ++e) sign_[e] = sign;
   }
 
   /// How element e names its side s against how its neighbour does.
@@ -49,7 +49,7 @@ class Numbering {
     auto const own = side_nodes(mesh_, e, s, room);
     auto const back = sides_.of(neighbour);
     for (int t = 0; t < int(back.size()); ++t)
-      if (back[std::size_t(t)] == e)
+      if (back[t] == e)
         if (int const found = alike(own, side_nodes(mesh_, neighbour, t, other_room)); found != 0) return found;
     return 0;
   }
@@ -57,23 +57,23 @@ class Numbering {
   /// Signs of all elements that hang together with e.
   void follow(Index first) {
     members_.assign(1, Index32(first));
-    sign_[std::size_t(first)] = 1;
-    Index balance = volume_[std::size_t(first)];
+    sign_[first] = 1;
+    Index balance = volume_[first];
     for (std::size_t m = 0; m < members_.size(); ++m) {
       Index32 const e = members_[m];
       auto const neighbours = sides_.of(e);
       for (int s = 0; s < int(neighbours.size()); ++s) {
-        Index32 const n = neighbours[std::size_t(s)];
-        if (n < 0 || sign_[std::size_t(n)] != 0) continue;
+        Index32 const n = neighbours[s];
+        if (n < 0 || sign_[n] != 0) continue;
         int const same = across(e, s, n);
         if (same == 0) continue;
-        sign_[std::size_t(n)] = static_cast<signed char>(same * sign_[std::size_t(e)]);
-        balance += sign_[std::size_t(n)] * volume_[std::size_t(n)];
+        sign_[n] = static_cast<signed char>(same * sign_[e]);
+        balance += sign_[n] * volume_[n];
         members_.push_back(n);
       }
     }
     if (balance < 0)
-      for (Index32 const e : members_) sign_[std::size_t(e)] = static_cast<signed char>(-sign_[std::size_t(e)]);
+      for (Index32 const e : members_) sign_[e] = static_cast<signed char>(-sign_[e]);
   }
 
   Mesh const& mesh_;

@@ -21,20 +21,19 @@ struct WallTable {
 
 /// The next node of a column over corner `node` of boundary face f, or -1.
 Index32 next_on_column(Mesh const& mesh, UnstructuredTopology const& topology, Index32 f, Index32 node) {
-  Index32 const element = topology.boundary.element[std::size_t(f)];
-  auto const type = mesh.elements.type[std::size_t(element)];
+  Index32 const element = topology.boundary.element[f];
+  auto const type = mesh.elements.type[element];
   if (type == ElementType::polyhedron) {
     OppositeSide opposite;
-    find_opposite_side(mesh, element, topology.boundary.side[std::size_t(f)], opposite);
+    find_opposite_side(mesh, element, topology.boundary.side[f], opposite);
     auto const at = std::find(opposite.below.begin(), opposite.below.end(), node);
-    return opposite.side < 0 || at == opposite.below.end() ? -1
-                                                           : opposite.above[std::size_t(at - opposite.below.begin())];
+    return opposite.side < 0 || at == opposite.below.end() ? -1 : opposite.above[at - opposite.below.begin()];
   }
   auto const corners = mesh.elements.corners(element);
   for (std::size_t c = 0; c < corners.size(); ++c)
     if (corners[c] == node) {
-      int const next = layer_corner(type, topology.boundary.side[std::size_t(f)], int(c));
-      return next < 0 ? -1 : corners[std::size_t(next)];
+      int const next = layer_corner(type, topology.boundary.side[f], int(c));
+      return next < 0 ? -1 : corners[next];
     }
   return -1;
 }
@@ -55,7 +54,7 @@ WallTable wall_table(Mesh const& mesh, UnstructuredTopology const& topology, std
     around.clear();
     for (; p < pairs.size() && pairs[p].first == node; ++p) {
       around.push_back(pairs[p].second);
-      if (next < 0) next = next_on_column(mesh, topology, faces[std::size_t(pairs[p].second)], node);
+      if (next < 0) next = next_on_column(mesh, topology, faces[pairs[p].second], node);
     }
     if (next < 0) continue;
     out.node.push_back(node);
@@ -76,16 +75,16 @@ WallQualities wall_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopol
   std::vector<std::string> names;
   std::vector<int> group_of_patch(mesh.patches.size(), -1);
   for (int const p : input.walls) {
-    auto const& patch = mesh.patches.at(std::size_t(p));
+    auto const& patch = mesh.patches.at(p);
     std::string const& name = patch.families.empty() ? patch.name : patch.families.front();
     auto const at = std::find(names.begin(), names.end(), name);
-    group_of_patch[std::size_t(p)] = int(at - names.begin());
+    group_of_patch[p] = int(at - names.begin());
     if (at == names.end()) names.push_back(name);
   }
   std::vector<std::vector<Index32>> faces(names.size());
   for (std::size_t f = 0; f < face_patches.patch.size(); ++f)
-    if (face_patches.patch[f] >= 0 && group_of_patch[std::size_t(face_patches.patch[f])] >= 0)
-      faces[std::size_t(group_of_patch[std::size_t(face_patches.patch[f])])].push_back(Index32(f));
+    if (face_patches.patch[f] >= 0 && group_of_patch[face_patches.patch[f]] >= 0)
+      faces[group_of_patch[face_patches.patch[f]]].push_back(Index32(f));
 
   WallSums all;
   WallQualities out;
@@ -108,7 +107,7 @@ WallQualities wall_quality(Exec const& exec, Mesh const& mesh, UnstructuredTopol
     auto const nodes_h = download(exec, nodes);
     WallSums sums;
     for (Index m = 0; m < n; ++m) {
-      Index const node = table.node[std::size_t(m)];
+      Index const node = table.node[m];
       NodeLocation const where{mesh.zone_of(node), {int(node_number_in_file(mesh, node)) - 1, 0, 0}};
       all.add(nodes_h(m), where, against_baseline);
       sums.add(nodes_h(m), where, against_baseline);
