@@ -11,8 +11,8 @@
 #include "bench.hpp"
 #include "roof.hpp"
 
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/io/file_kind.hpp>
 #include <gridmorph/io/mesh_io.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/newly_inverted.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 #include <gridmorph/report/quality_json.hpp>
 
 #include <nlohmann/json.hpp>

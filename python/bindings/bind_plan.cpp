@@ -1,10 +1,10 @@
 #include "objects.hpp"
 
 #include <gridmorph/boundary/selectors.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
-#include <gridmorph/morph/ffd_gradient.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/parameter_gradient.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>

@@ -7,7 +7,7 @@
 #include <gridmorph/boundary/link_nodes.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
 #include <gridmorph/morph/plan_access.hpp>
-#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include "support/with_and_without.hpp"
 
 #include <gridmorph/boundary/link_nodes.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 #include <gridmorph/quality/quality.hpp>

@@ -169,14 +169,14 @@ TEST(ListedNodes, AreSetTakenAddedCopiedAndWritten) {
   EXPECT_EQ(u[5], boundary[0]);
   EXPECT_EQ(u[3], Vec3{});
   kernels::launch("test::misses", Exec(),
-                  kernels::GivenMisses<Host>{view<std::int32_t>({5, 2}), view<std::int32_t>({1, 2}), given, u.data(),
-                                             left.data(), listed.data()});
+                  kernels::GivenResiduals<Host>{view<std::int32_t>({5, 2}), view<std::int32_t>({1, 2}), given, u.data(),
+                                                left.data(), listed.data()});
   EXPECT_EQ(left[5], boundary[1] - boundary[0]);
   EXPECT_EQ(listed[1], boundary[2]);
   Vectors const wanted = asked;
   Vec3 const before = u[1];
   kernels::launch("test::take", Exec(),
-                  kernels::TakeAsked<Host>{view<std::int32_t>({4, 1}), u.data(), asked.data(), listed.data()});
+                  kernels::TakePrescribed<Host>{view<std::int32_t>({4, 1}), u.data(), asked.data(), listed.data()});
   EXPECT_EQ(u[1], wanted[1]);
   EXPECT_EQ(asked[1], wanted[1] - before);
   EXPECT_EQ(listed[1], wanted[1] - before);

@@ -87,8 +87,8 @@ class Node {
     Vec3 at = u, found = rate;
     (*this)(at, found);
     Vec3 of_node = g, unlisted;
-    kernels::AskNodes<Host, false> const ask{table_, {}, {}, {&x_.x, &x_.y, &x_.z}, nullptr, nullptr};
-    kernels::AskNodesBack<Host>{ask, &u, &of_node, &unlisted}(0);
+    kernels::PrescribeNodes<Host, false> const ask{table_, {}, {}, {&x_.x, &x_.y, &x_.z}, nullptr, nullptr};
+    kernels::PrescribeNodesBack<Host>{ask, &u, &of_node, &unlisted}(0);
     EXPECT_NEAR(dot(of_node, rate), dot(g, found), 1e-13);
     kernels::Field<double const> const kept{&u.x, &u.y, &u.z}, of_end{&g.x, &g.y, &g.z};
     kernels::SlipEndValues<Host, false> const ends{ends_, baselines_, table_.surfaces, {}, kept, kept, {}};
@@ -99,7 +99,7 @@ class Node {
  private:
   /// By the kernel of unstructured meshes.
   void ask(Vec3& u, Vec3& rate) const {
-    kernels::AskNodes<Host, true>{table_, {}, {}, {&x_.x, &x_.y, &x_.z}, &u, &rate}(0);
+    kernels::PrescribeNodes<Host, true>{table_, {}, {}, {&x_.x, &x_.y, &x_.z}, &u, &rate}(0);
   }
   /// By the kernel of structured meshes, which gives what is to be added.
   void add_end(Vec3& u, Vec3& rate) const {

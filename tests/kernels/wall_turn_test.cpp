@@ -97,11 +97,11 @@ TEST(Rotations, OfHalfATurnHaveOneDirection) {
   Random random(9);
   for (int n = 0; n < 100; ++n) {
     Vec3 const v = random.vector(1), axis = (1 / norm(v)) * v, round_off = random.vector(1e-9);
-    Vec3 const one = kernels::settled(axis + round_off), other = kernels::settled(-axis + round_off);
+    Vec3 const one = kernels::canonical(axis + round_off), other = kernels::canonical(-axis + round_off);
     EXPECT_LT(distance(one, other), 1e-8) << n;
     Vec3 const w = random.vector(1);
     EXPECT_LT(distance(w + kernels::turned_by(one, w), matrix_of(-std::numbers::pi * axis) * w), 1e-8) << n;
-    EXPECT_EQ(kernels::settled(0.99 * axis), 0.99 * axis);
+    EXPECT_EQ(kernels::canonical(0.99 * axis), 0.99 * axis);
   }
 }
 
@@ -169,7 +169,7 @@ TEST(Rotations, GoTheWayThatIsNearer) {
     }
     Vec3 const little = rotation(2 * axis);
     EXPECT_EQ(kernels::way_near(little, rotation(-3 * axis)), little) << "up to 120 degrees they stay as they are";
-    Vec3 const half = kernels::settled(axis);
+    Vec3 const half = kernels::canonical(axis);
     EXPECT_EQ(kernels::way_near(half, Vec3{}), half) << "and where there is none that is nearer";
   }
 }

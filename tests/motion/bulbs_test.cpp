@@ -5,7 +5,7 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
-#include <gridmorph/motion/bulbs.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <gtest/gtest.h>
 

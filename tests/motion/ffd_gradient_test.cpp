@@ -7,7 +7,6 @@
 #include "support/transpose_check.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/morph/ffd_gradient.hpp>
 #include <gridmorph/morph/parameter_gradient.hpp>
 
 #include <gtest/gtest.h>

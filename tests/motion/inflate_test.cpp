@@ -8,8 +8,8 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/height_table.hpp>
 #include <gridmorph/motion/inflation/surface_offset.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The values that solvers fill in, made as their authors write them: inside templates, where g++ 12 ends with an
 // internal error over default members that are braced lists of structs.
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/relaxation.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/motion/motion.hpp>
 #include <gridmorph/plan/elements/background.hpp>

@@ -1,7 +1,7 @@
 // The same results on all execution spaces; run with different numbers of threads by the build system.
 // Also what the measurement allocates, and under which names.
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include "quality/test_meshes.hpp"
 #include "support/every_space.hpp"

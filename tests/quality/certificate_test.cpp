@@ -6,7 +6,7 @@
 #include <gridmorph/kernels/element_map.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
-#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "support/unstructured_case.hpp"
 
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <cmath>
 #include <functional>

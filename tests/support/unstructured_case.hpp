@@ -15,6 +15,13 @@
 
 namespace gridmorph::test {
 
+/// Where the lattice carries the walls' motion there are wraps and backgrounds, and bodies stretch as wholes.
+inline PlanOptions by_lattice() {
+  PlanOptions options;
+  options.elements.method = NearFieldMethod::lattice;
+  return options;
+}
+
 struct UnstructuredMorphed {
   PreparedUnstructured prepared;
   std::vector<Vec3> boundary;

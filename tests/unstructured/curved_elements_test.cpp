@@ -6,7 +6,7 @@
 #include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/kernels/curved_element.hpp>
-#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

@@ -164,9 +164,7 @@ TEST(FittedBackground, StaysInTheDomainAndLeavesNoNodeOfTheWrapOutside) {
     UnstructuredCase const c(around_body(shape.to));
     Motion const motion =
         motion_of({rule_for({"body"}, twisted(shape.to, 0.02)), rule_for({"?_min", "?_max"}, FixedRule{})});
-    PlanOptions options;
-    options.elements.method = NearFieldMethod::lattice;
-    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, options);
+    auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, by_lattice());
     EXPECT_EQ(prepared.report.wrap_outside, 0) << prepared.report.wrap_distance;
     ASSERT_TRUE(prepared.plan.background);
     Coordinates const& x = prepared.plan.background->mesh.coordinates;

@@ -7,7 +7,7 @@
 #include "support/with_and_without.hpp"
 
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 
 #include <gridmorph/guard/relaxation.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

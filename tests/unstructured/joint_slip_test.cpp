@@ -5,8 +5,8 @@
 #include "support/unstructured_case.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/relaxation.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/kernels/transposed_slip.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/trim_note.hpp>

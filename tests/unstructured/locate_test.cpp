@@ -4,8 +4,8 @@
 #include "support/reduced.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/host_spaces.hpp>
 #include <gridmorph/kernels/element_place.hpp>
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/plan/elements/locate.hpp>

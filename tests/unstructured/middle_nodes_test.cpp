@@ -6,10 +6,10 @@
 #include "support/unstructured_meshes.hpp"
 #include "support/with_and_without.hpp"
 
-#include <gridmorph/guard/smoothing_record.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/kernels/curved_margin.hpp>
 #include <gridmorph/morph/morph.hpp>
-#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

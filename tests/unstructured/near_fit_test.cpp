@@ -4,7 +4,7 @@
 #include "support/random.hpp"
 #include "support/unstructured_case.hpp"
 
-#include <gridmorph/core/host_spaces.hpp>
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/kernels/least_squares.hpp>
 #include <gridmorph/plan/least_squares_field.hpp>
 
@@ -144,10 +144,9 @@ TEST(NearFit, FarNodesDoNotTurnWithWallsOnAPlane) {
 
 TEST(NearFit, GoesByTheLatticeAmidABackgroundMeshOfTheUsers) {
   Case const c = section();
-  PlanOptions options = by_fit(), by_lattice;
-  by_lattice.elements.method = NearFieldMethod::lattice;
+  PlanOptions options = by_fit();
   options.elements.background = std::make_shared<Background const>(
-      *c.morph(by_places("airfoil", bent(0.05)), by_lattice).prepared.plan.background);
+      *c.morph(by_places("airfoil", bent(0.05)), by_lattice()).prepared.plan.background);
   auto const m = c.morph(by_places("airfoil", bent(0.05)), options);
   EXPECT_FALSE(m.prepared.plan.walls.empty());
   EXPECT_TRUE(m.prepared.plan.fit.empty());
@@ -253,6 +252,10 @@ struct Bumps {
   }
 };
 
+FieldSources sources(Bumps const& of, std::vector<RigidTransform> images = {}) {
+  return {of.walls, of.walls.size(), of.area, std::move(images)};
+}
+
 TEST(LeastSquaresField, CarriesAMotionOfAllWallsExactly) {
   Bumps const b;
   RigidTransform const r = rotation_about({1, 2, 3}, {0.6, 0, 0.8}, 1.1);
@@ -260,7 +263,7 @@ TEST(LeastSquaresField, CarriesAMotionOfAllWallsExactly) {
   for (int i = 0; i < 3; ++i) gradient.m[i][i] -= 1;
   std::vector<kernels::AffineMotion> frames;
   for (Index32 const w : b.walls) frames.push_back({r(b.x[w]) - b.x[w], gradient});
-  auto const field = make_least_squares_field(HostInstance(), b.x, b.walls, b.area, {}, MeanTurn::taken_off, b.readers);
+  auto const field = make_least_squares_field(HostInstance(), b.x, sources(b), MeanTurn::taken_off, b.readers);
   auto const u = applied(field, b.x, b.walls, frames);
   for (std::size_t k = 0; k < u.size(); ++k) {
     Vec3 const at = b.x[b.readers[k].node];
@@ -290,11 +293,11 @@ TEST(LeastSquaresField, HasImagesAsIfTheyWereWalls) {
   for (FieldReader& r : all.readers)
     for (Index32 const w : all.walls) r.distance = std::min(r.distance, distance(all.x[w], all.x[r.node]));
   auto const u =
-      applied(make_least_squares_field(HostInstance(), b.x, b.walls, b.area, {to}, MeanTurn::taken_off, b.readers), b.x,
+      applied(make_least_squares_field(HostInstance(), b.x, sources(b, {to}), MeanTurn::taken_off, b.readers), b.x,
               b.walls, frames);
-  auto const v = applied(
-      make_least_squares_field(HostInstance(), all.x, all.walls, all.area, {}, MeanTurn::taken_off, all.readers), all.x,
-      all.walls, frames_of_all);
+  auto const v =
+      applied(make_least_squares_field(HostInstance(), all.x, sources(all), MeanTurn::taken_off, all.readers), all.x,
+              all.walls, frames_of_all);
   ASSERT_EQ(u.size(), v.size());
   for (std::size_t k = 0; k < u.size(); ++k) ASSERT_LT(distance(u[k], v[k]), 1e-12) << k;
 }
@@ -310,8 +313,8 @@ TEST(LeastSquaresField, IsSmoothAndDoesNotDependOnTheAxes) {
     for (auto& f : frames)
       for (auto& row : f.gradient.m)
         for (double& entry : row) entry = 0;
-    auto const field = make_least_squares_field(HostInstance(), turned.x, turned.walls, turned.area, {},
-                                                MeanTurn::taken_off, turned.readers);
+    auto const field =
+        make_least_squares_field(HostInstance(), turned.x, sources(turned), MeanTurn::taken_off, turned.readers);
     auto u = applied(field, turned.x, turned.walls, frames);
     Mat3 const back = transpose(turn.rotation);
     for (Vec3& v : u) v = back * v;

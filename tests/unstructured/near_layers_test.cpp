@@ -3,7 +3,7 @@
 #include "support/random.hpp"
 #include "support/unstructured_case.hpp"
 
-#include <gridmorph/core/host_spaces.hpp>
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/kernels/layer_motion.hpp>
 
 #include <gtest/gtest.h>

@@ -16,11 +16,6 @@ class OwnBackground : public testing::Test {
   static bool in_body(Vec3 const& x) { return x.x > 5 && x.x < 9 && x.y > 5 && x.y < 9 && x.z > 5 && x.z < 9; }
   UnstructuredCase c{box_around({14, 14, 14}, in_body, true)};
   Motion motion = motion_of({rule_for({"body"}, rotation({7, 7, 7}, {1, 2, 3}, 0.3, {1, 0, 0}))});
-  static PlanOptions by_lattice() {
-    PlanOptions options;
-    options.elements.method = NearFieldMethod::lattice;
-    return options;
-  }
   UnstructuredMorphed automatic = c.morph(motion, by_lattice());
 
   /// The background mesh made for this case, as any other structured mesh, deformed by `to`.

@@ -6,7 +6,6 @@
 
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/kernels/polyhedron_quality.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/quality/validity.hpp>
 

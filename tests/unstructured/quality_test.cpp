@@ -2,10 +2,10 @@
 #include "quality/test_meshes.hpp"
 #include "support/unstructured_meshes.hpp"
 
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/host_spaces.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

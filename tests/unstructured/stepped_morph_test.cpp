@@ -7,9 +7,9 @@
 #include <generators/sphere.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/rotation.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/relaxation.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 
 #include <gtest/gtest.h>

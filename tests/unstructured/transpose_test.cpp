@@ -46,11 +46,6 @@ Rule stretches(double size, Vec3 const& centre = {3.5, 3.5, 3.5}, double across 
                         }
                       }};
 }
-PlanOptions by_lattice() {
-  PlanOptions options;
-  options.elements.method = NearFieldMethod::lattice;
-  return options;
-}
 PlanOptions with_layers(int n, BoundaryLayer::Mode mode = BoundaryLayer::Mode::rotate) {
   PlanOptions options = by_lattice();
   options.elements.cells = 1;  // a coarse background: the stages are the same

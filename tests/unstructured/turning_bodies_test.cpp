@@ -352,7 +352,7 @@ TEST(TurningBody, ItsImageTurnsInTheFrameOfTheImage) {
   Vec3 const centre = random.vector(2), axis = random.vector(1), at = random.vector(3);
   RigidTransform const move = rotation_about(random.vector(1), random.vector(1), 0.7);
   double const angle = 0.9, f = 0.4;
-  std::vector<kernels::BodyImage> const images{{0, {}, {}}, {0, move.rotation, move.translation}};
+  std::vector<kernels::BodyImage> const images{{{{}, {}}, 0}, {{move.rotation, move.translation}, 0}};
   std::vector<double> const share{0, f}, shift_share{0};
   std::vector<Vec3> const centres{centre}, shift{{}};
   kernels::Quaternion<Vec3> const half = kernels::quaternion_of_half(std::tan(angle / 4) / norm(axis) * axis);
@@ -516,12 +516,6 @@ Motion by_places(std::string const& patch, std::function<Vec3(Vec3 const&)> cons
   return motion_of({rule_for({patch}, FunctionRule{"moves", [=](std::span<Vec3 const> x, std::span<Vec3> u) {
                                                      for (std::size_t n = 0; n < x.size(); ++n) u[n] = moves(x[n]);
                                                    }})});
-}
-/// Bodies stretch as wholes where the lattice carries what is left.
-PlanOptions by_lattice() {
-  PlanOptions options;
-  options.elements.method = NearFieldMethod::lattice;
-  return options;
 }
 double stretch_share(UnstructuredMorphed const& m) {
   auto const& limits = m.prepared.plan.turns_of_bodies.limits;

@@ -5,8 +5,8 @@
 #include "support/motions.hpp"
 
 #include <gridmorph/geometry/rigid_transform.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

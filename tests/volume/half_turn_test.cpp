@@ -6,7 +6,7 @@
 #include "support/transpose_check.hpp"
 
 #include <gridmorph/boundary/find_interfaces.hpp>
-#include <gridmorph/core/host_spaces.hpp>
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <gtest/gtest.h>

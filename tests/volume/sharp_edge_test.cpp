@@ -3,7 +3,7 @@
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
 
-#include <gridmorph/quality/certificate.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <gtest/gtest.h>
 

@@ -22,7 +22,7 @@
 //
 // R(f): the quaternion h of half of R_b, f of the chord from no rotation to h and back onto the sphere, squared. So the
 // angle is f times the whole one to 2 degrees over half a turn, nothing shrinks, and a node costs no trigonometry. Half
-// a turn has one axis for all nodes (settled()).
+// a turn has one axis for all nodes (canonical()).
 //
 // Behind periodic connections a body comes again as images: image k, moved by x' = Q x + t, adds what the body does at
 // Q^T (x - t), turned by Q, with a share of its own.
@@ -137,11 +137,11 @@ KOKKOS_INLINE_FUNCTION V best_turn(VectorMoments const& s, [[maybe_unused]] Vect
   if (dot(axis, axis) > 0) {
     double const sine = dot(axis, s.crossed()), cosine = s.trace() - s.along(axis);
     if constexpr (has_rate<V>)
-      return settled(
+      return canonical(
           quarter_tangent(Dual{sine, dot(axis, rate.crossed())}, Dual{cosine, rate.trace() - rate.along(axis)}) *
           V{axis});
     else
-      return settled(quarter_tangent(sine, cosine) * axis);
+      return canonical(quarter_tangent(sine, cosine) * axis);
   }
   double real;
   Vec3 imaginary;
@@ -149,9 +149,9 @@ KOKKOS_INLINE_FUNCTION V best_turn(VectorMoments const& s, [[maybe_unused]] Vect
   if constexpr (has_rate<V>) {
     Vec3 const p = best_rate(s, rate, {imaginary, 1 - real});
     Dual const whole{1 + real, -0.5 * dot(imaginary, p)};
-    return settled((1 / whole) * V{imaginary, 0.5 * (real * p + cross(imaginary, p))});
+    return canonical((1 / whole) * V{imaginary, 0.5 * (real * p + cross(imaginary, p))});
   } else {
-    return settled((1 / (1 + real)) * imaginary);
+    return canonical((1 / (1 + real)) * imaginary);
   }
 }
 
@@ -337,11 +337,9 @@ struct StretchBodies {
   }
 };
 
-/// A body itself, or as it comes again: place and what it does there by x' = rotation x + translation.
-struct BodyImage {
+/// A body itself, or as it comes again.
+struct BodyImage : WallImage {
   std::int32_t body;
-  Mat3 rotation;
-  Vec3 translation;
 };
 
 /// What the turns, stretches and shifts of all bodies add to a node, and turns to the motion around a body's walls.

@@ -18,6 +18,12 @@
 
 namespace gridmorph::kernels {
 
+/// Walls as they come again behind periodic boundaries: at x' = rotation x + translation.
+struct WallImage {
+  Mat3 rotation;
+  Vec3 translation;
+};
+
 /// Displacement around a place: u + gradient (x - place).
 struct AffineMotion {
   Vec3 u;

@@ -101,11 +101,11 @@ struct PutBackGiven {
   [[nodiscard]] Index size() const { return Index(slot.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const s = slot(k);
-    Vec3 const asked = given[s];
-    Vec3 u = asked, rate;
+    Vec3 const prescribed = given[s];
+    Vec3 u = prescribed, rate;
     if constexpr (Rate) rate = given_rate[s];
     table.template constrain<Rate>(k, x, u, rate);
-    if (norm(u - asked) > tolerance(k)) kept[s] = u;
+    if (norm(u - prescribed) > tolerance(k)) kept[s] = u;
     if constexpr (Rate) kept_rate[s] = rate;
   }
 };

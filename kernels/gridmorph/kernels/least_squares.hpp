@@ -47,12 +47,6 @@ struct MotionMoments {
   }
 };
 
-/// Walls as they come again behind periodic boundaries: at x' = rotation x + translation.
-struct WallImage {
-  Mat3 rotation;
-  Vec3 translation;
-};
-
 /// moment(k) of a wall node from its frame: where it goes and how the wall turns there; of all nodes, then of those of
 /// each image.
 template <class MemorySpace>

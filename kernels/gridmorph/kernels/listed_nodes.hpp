@@ -28,9 +28,9 @@ struct SetFromSlots {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[nodes(slots(k))] = boundary[slots(k)]; }
 };
 
-/// What u lacks at nodes whose displacement is given, by node and in the order of the list.
+/// The residual, given minus u, at nodes whose displacement is given, by node and in the order of the list.
 template <class MemorySpace>
-struct GivenMisses {
+struct GivenResiduals {
   Kokkos::View<std::int32_t const*, MemorySpace> node, slot;
   VectorArray boundary;
   Vec3 const* u;
@@ -44,18 +44,19 @@ struct GivenMisses {
   }
 };
 
-/// u becomes what is asked for; what it lacked is left in `asked`, by node and in the order of the list.
+/// u becomes what is prescribed; the residual, prescribed minus u before, is left in its place by node, and listed in
+/// the order of the list.
 template <class MemorySpace>
-struct TakeAsked {
+struct TakePrescribed {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
-  Vec3 *u, *asked, *listed;
+  Vec3 *u, *prescribed, *listed;
 
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const n = node(k);
-    Vec3 const wanted = asked[n], lacked = wanted - u[n];
-    u[n] = wanted;
-    asked[n] = listed[k] = lacked;
+    Vec3 const residual = prescribed[n] - u[n];
+    u[n] = prescribed[n];
+    prescribed[n] = listed[k] = residual;
   }
 };
 

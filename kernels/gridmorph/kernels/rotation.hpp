@@ -106,7 +106,7 @@ KOKKOS_INLINE_FUNCTION V way_near(V const& r, Vec3 const& to) {
 /// Neighbours that blend their half turns have to agree on one of r and -r, whatever round-off says of each: the
 /// direction along which z, else y, else x rises.
 template <class V>
-KOKKOS_INLINE_FUNCTION V settled(V const& r) {
+KOKKOS_INLINE_FUNCTION V canonical(V const& r) {
   auto const square = dot(r, r);
   if (!(square > 1 - 3e-6)) return r;
   Vec3 const v = value_of(r);
@@ -142,7 +142,7 @@ template <class V>
 KOKKOS_INLINE_FUNCTION V turn_then(V const& first, V const& next) {
   TurnProduct<V> product(first, next);
   if (product.real < 0) product.turn_round();
-  return settled(product.rotation());
+  return canonical(product.rotation());
 }
 
 /// A rotation that is corrected keeps its way round if it is beyond 120 degrees, up to 270.

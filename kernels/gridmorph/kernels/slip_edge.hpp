@@ -55,30 +55,30 @@ KOKKOS_INLINE_FUNCTION AcrossEdge slide_along_edge(int count, Surfaces const& su
 /// change. surface(m), own(m): as above.
 ///
 /// Surfaces are applied in turn; planes at right angles, and surfaces of revolution with planes across or along their
-/// axis, are exact after one round. Where that does not settle in three rounds the node slides along their common edge.
-/// The rate after that is the one before without its components across the edge: exact but for the curvature of the
-/// surfaces over the length of the steps. A displacement that all surfaces leave as it is has a rate that they do not:
-/// it goes through the same rounds, and along the edge.
+/// axis, are exact after one round. Where that does not converge in three rounds the node slides along their common
+/// edge. The rate after that is the one before without its components across the edge: exact but for the curvature of
+/// the surfaces over the length of the steps. A displacement that all surfaces leave as it is has a rate that they do
+/// not: it goes through the same rounds, and along the edge.
 template <bool Rate, class Surfaces, class Offsets>
 KOKKOS_INLINE_FUNCTION void constrain_to_all(int count, Surfaces const& surface, Offsets const& own,
                                              Vec3 const& baseline, Vec3& u, Vec3& rate) {
   constexpr int max_rounds = 3;
-  bool settled = false;
+  bool converged = false;
   for (int round = 0; round < (count > 1 ? max_rounds : 1); ++round) {
     // Each surface has to leave u as it is: two that put the node back along one line undo each other's step, round by
     // round.
-    settled = true;
+    converged = true;
     for (int m = 0; m < count; ++m) {
       Vec3 const before = u;
       if constexpr (Rate) rate = surface(m).constrain_rate(baseline, own(m), u, rate);
       u = surface(m).constrain(baseline, own(m), u);
-      settled = settled && u == before;
+      converged = converged && u == before;
     }
-    if (count < 2 || (settled && !Rate)) return;
+    if (count < 2 || (converged && !Rate)) return;
   }
   Vec3 on_all = u;
   AcrossEdge const across = slide_along_edge(count, surface, own, baseline, on_all);
-  if (!settled) u = on_all;
+  if (!converged) u = on_all;
   if constexpr (Rate)
     for (int k = 0; k < across.count; ++k) rate = rate - dot(rate, across.direction[k]) * across.direction[k];
 }

@@ -20,22 +20,22 @@ struct SlipNodeTable {
   Kokkos::View<SlipSurfaceView const*, MemorySpace> surfaces;
 };
 
-/// asked: with the nodes' own displacements on entry. With `Rate` also the rates of change.
+/// prescribed: with the nodes' own displacements on entry. With `Rate` also the rates of change.
 template <class MemorySpace, bool Rate>
-struct AskNodes {
+struct PrescribeNodes {
   SlipNodeTable<MemorySpace> table;
   VectorArray boundary, boundary_rate;
   Field<double const> x;
-  Vec3 *asked, *asked_rate;
+  Vec3 *prescribed, *prescribed_rate;
 
   [[nodiscard]] Index size() const { return Index(table.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const n = table.node(k), slot = table.slot(k);
-    Vec3 u = slot >= 0 ? boundary[slot] : asked[n], rate;
-    if constexpr (Rate) rate = slot >= 0 ? boundary_rate[slot] : asked_rate[n];
+    Vec3 u = slot >= 0 ? boundary[slot] : prescribed[n], rate;
+    if constexpr (Rate) rate = slot >= 0 ? boundary_rate[slot] : prescribed_rate[n];
     constrain(k, u, rate);
-    asked[n] = u;
-    if constexpr (Rate) asked_rate[n] = rate;
+    prescribed[n] = u;
+    if constexpr (Rate) prescribed_rate[n] = rate;
   }
   /// What its surfaces make of a displacement, and with `Rate` of its rate.
   KOKKOS_INLINE_FUNCTION void constrain(Index k, Vec3& u, Vec3& rate) const {

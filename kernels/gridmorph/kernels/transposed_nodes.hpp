@@ -46,9 +46,9 @@ struct FramesToSlots {
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const { to[slot(k)] += frame[k].u; }
 };
 
-/// Transpose of GivenMisses: left by node and listed, to the slots' nodes and, listed, to the slots.
+/// Transpose of GivenResiduals: left by node and listed, to the slots' nodes and, listed, to the slots.
 template <class MemorySpace>
-struct GivenMissesBack {
+struct GivenResidualsBack {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
   Vec3 *left, *listed, *u;
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
@@ -61,18 +61,18 @@ struct GivenMissesBack {
   }
 };
 
-/// Transpose of TakeAsked.
+/// Transpose of TakePrescribed.
 template <class MemorySpace>
-struct TakeAskedBack {
+struct TakePrescribedBack {
   Kokkos::View<std::int32_t const*, MemorySpace> node;
-  Vec3 *u, *asked;
+  Vec3 *u, *prescribed;
   Vec3 const* listed;
   [[nodiscard]] Index size() const { return Index(node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const n = node(k);
-    Vec3 const lacked = asked[n] + listed[k];
-    asked[n] = u[n] + lacked;
-    u[n] = -lacked;
+    Vec3 const residual = prescribed[n] + listed[k];
+    prescribed[n] = u[n] + residual;
+    u[n] = -residual;
   }
 };
 
@@ -176,28 +176,28 @@ struct PeriodicMeanBack {
   }
 };
 
-/// Displacements that AskNodes is about to ask with, kept for its transpose.
+/// Displacements that PrescribeNodes is about to ask with, kept for its transpose.
 template <class MemorySpace>
-struct KeepAsked {
+struct KeepPrescribed {
   SlipNodeTable<MemorySpace> table;
   VectorArray boundary;
-  Vec3 const* asked;
+  Vec3 const* prescribed;
   Vec3* kept;
   [[nodiscard]] Index size() const { return Index(table.node.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
-    kept[k] = table.slot(k) >= 0 ? boundary[table.slot(k)] : asked[table.node(k)];
+    kept[k] = table.slot(k) >= 0 ? boundary[table.slot(k)] : prescribed[table.node(k)];
   }
 };
-/// Transpose of AskNodes: to the slots, listed, or to the nodes' own displacements.
+/// Transpose of PrescribeNodes: to the slots, listed, or to the nodes' own displacements.
 template <class MemorySpace>
-struct AskNodesBack {
-  AskNodes<MemorySpace, false> ask;
+struct PrescribeNodesBack {
+  PrescribeNodes<MemorySpace, false> ask;
   Vec3 const* kept;
-  Vec3 *asked, *listed;
+  Vec3 *prescribed, *listed;
   [[nodiscard]] Index size() const { return ask.size(); }
   KOKKOS_INLINE_FUNCTION void operator()(Index k) const {
     Index const n = ask.table.node(k);
-    Vec3 g = asked[n];
+    Vec3 g = prescribed[n];
     if (int const count = int(ask.table.first(k + 1) - ask.table.first(k)); count > 0) {
       Index const from = ask.table.first(k);
       Vec3 const baseline = ask.x[n];
@@ -208,7 +208,7 @@ struct AskNodesBack {
       g = constrained_gradient(count, surface, own, baseline, kept[k], g);
     }
     bool const given = ask.table.slot(k) >= 0;
-    asked[n] = given ? Vec3{} : g;
+    prescribed[n] = given ? Vec3{} : g;
     listed[k] = given ? g : Vec3{};
   }
 };

@@ -15,9 +15,9 @@ KOKKOS_INLINE_FUNCTION Vec3 other_way_gradient(Vec3 const& r, Vec3 const& g) {
   double const square = dot(r, r);
   return (-1 / square) * g + (2 * dot(g, r) / (square * square)) * r;
 }
-/// The gradient of r from that of settled(r), or of way_near(r, to), g.
-KOKKOS_INLINE_FUNCTION Vec3 settled_gradient(Vec3 const& r, Vec3 const& g) {
-  return settled(r) == r ? g : other_way_gradient(r, g);
+/// The gradient of r from that of canonical(r), or of way_near(r, to), g.
+KOKKOS_INLINE_FUNCTION Vec3 canonical_gradient(Vec3 const& r, Vec3 const& g) {
+  return canonical(r) == r ? g : other_way_gradient(r, g);
 }
 KOKKOS_INLINE_FUNCTION Vec3 way_near_gradient(Vec3 const& r, Vec3 const& to, Vec3 const& g) {
   return way_near(r, to) == r ? g : other_way_gradient(r, g);
@@ -60,7 +60,7 @@ KOKKOS_INLINE_FUNCTION void add_turn_then(Vec3 const& first, Vec3 const& next, V
   TurnProduct<Vec3> product(first, next);
   bool const round = product.real < 0;
   if (round) product.turn_round();
-  add_product(product, round ? -1 : 1, first, next, settled_gradient(product.rotation(), g), of_first, of_next);
+  add_product(product, round ? -1 : 1, first, next, canonical_gradient(product.rotation(), g), of_first, of_next);
 }
 /// Adds the gradients of both rotations in turn_on(first, correction).
 KOKKOS_INLINE_FUNCTION void add_turn_on(Vec3 const& first, Vec3 const& correction, Vec3 const& g, Vec3& of_first,

@@ -111,7 +111,7 @@ struct WallTurnBack {
       Vec3 const turn = turn_between(normal, moved, wall.across);
       of_moved = turn_between_gradient(
           normal, moved,
-          settled_gradient(turn, through_lines(r, n / 2, settled(turn), g, face_before, face_after, kept)));
+          canonical_gradient(turn, through_lines(r, n / 2, canonical(turn), g, face_before, face_after, kept)));
     } else {
       FanTurn const turn(normal, moved, sums);
       auto const of = turn.gradient(through_lines(r, n / 2, turn.rotation(), g, face_before, face_after, kept));

@@ -187,7 +187,7 @@ struct WallTurn {
   KOKKOS_INLINE_FUNCTION V turn_of_faces(Index r) const {
     V const after = wall.normal_after(r, baseline, moved);
     V const before = wall.normal(r, baseline);
-    if (wall.flat) return settled(turn_between(before, after, wall.across));
+    if (wall.flat) return canonical(turn_between(before, after, wall.across));
     V const swing = turn_between(before, after);
     auto const size = norm(after);
     if (!(size > 0)) return swing;

@@ -102,7 +102,7 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
   each_face([&](Index f, BoundarySurface& surface) {
     auto const face = topology.boundary.nodes[f];
     surface.nodes.insert(surface.nodes.end(), face.begin(), face.end());
-    for (auto const& m : side_middles(mesh, topology.boundary.element[f], topology.boundary.side[f]))
+    for (auto const& m : side_middle_nodes(mesh, topology.boundary.element[f], topology.boundary.side[f]))
       surface.nodes.push_back(m.node);
   });
   for (std::size_t p = 0; p < surfaces_.size(); ++p) {

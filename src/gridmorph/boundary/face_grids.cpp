@@ -26,7 +26,7 @@ class Quads {
       if (creases && twin_[h] > h && cosine(h / 4, twin_[h] / 4) < least) cut(h, todo);
       todo.push_back(h);
     }
-    settle(std::move(todo));
+    cut_on(std::move(todo));
   }
 
   FaceGrids run() {
@@ -91,7 +91,7 @@ class Quads {
   }
 
   /// Cuts on from where a part could not be a grid, until all can.
-  void settle(std::vector<int> todo) {
+  void cut_on(std::vector<int> todo) {
     while (!todo.empty()) {
       int const h = todo.back();
       todo.pop_back();
@@ -136,7 +136,7 @@ class Quads {
             if (across(4 * face + s) < 0 && across(at) >= 0) at = 4 * face + s;
         std::vector<int> todo;
         cut(across(at) < 0 ? before(at) : at, todo);
-        settle(std::move(todo));
+        cut_on(std::move(todo));
         corner = find_corner(faces);
       }
     }

@@ -1,8 +1,8 @@
-// The instance of a host execution space that host code launches on.
+// The instance of a host execution space that host code launches on; Kokkos must be running before the library
+// allocates or launches.
 #pragma once
 
-#include <gridmorph/core/host_spaces.hpp>
-#include <gridmorph/core/require_kokkos.hpp>
+#include <gridmorph/core/built_for.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -11,6 +11,10 @@
 #include <variant>
 
 namespace gridmorph {
+
+/// Throws ConfigError when Kokkos is not initialised, or finalised already: Kokkos' own message speaks of an
+/// allocation. `who` is what needs it.
+void require_kokkos(char const* who);
 
 /// An instance of any of the host's execution spaces, one type for all of them: planning is compiled once, not for each
 /// space. Converts from an instance; a copy launches on the same one.

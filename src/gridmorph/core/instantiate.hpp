@@ -18,7 +18,7 @@
 // With GRIDMORPH_DEFAULT_SPACES the list is that of core/host_spaces.hpp and the device's.
 #pragma once
 
-#include <gridmorph/core/host_spaces.hpp>
+#include <gridmorph/core/built_for.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 
 #include <Kokkos_Core.hpp>

@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/core/require_kokkos.hpp>
+#include <gridmorph/core/host_instance.hpp>
 
 #include <Kokkos_Core.hpp>
 

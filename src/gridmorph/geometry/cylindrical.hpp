@@ -2,7 +2,7 @@
 // the flow, along the span, and along the pitch; in a plane across the axis away from it, along it, and around it.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <cmath>
 

@@ -30,7 +30,7 @@ void check(FacetList const& list) {
       throw MotionError("point " + std::to_string(n + 1) + " of a surface is not finite; correct its coordinates");
 }
 
-/// The point that stands for each point: the first in lexicographic order of those that coincide.
+/// The representative of each point: the first in lexicographic order of those that coincide.
 std::vector<int> coincident(FacetList const& list, double tolerance) {
   std::size_t const n = list.points.size();
   // Never across more than a tenth of an edge, however small the edges are.
@@ -49,7 +49,7 @@ std::vector<int> coincident(FacetList const& list, double tolerance) {
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return before(list.points[a], list.points[b]); });
 
   PointNumbers kept(tolerance);
-  std::vector<int> stands_for(n);
+  std::vector<int> representative(n);
   for (int const i : order) {
     int found = -1;
     kept.for_each_near(list.points[i], [&](Vec3 const& p, int k) {
@@ -57,10 +57,10 @@ std::vector<int> coincident(FacetList const& list, double tolerance) {
       bool const one = apart == 0 || apart <= std::min(reach[i], reach[k]);
       if (one && (found < 0 || before(p, list.points[found]))) found = k;
     });
-    stands_for[i] = found < 0 ? i : found;
+    representative[i] = found < 0 ? i : found;
     if (found < 0) kept.add(list.points[i], i);
   }
-  return stands_for;
+  return representative;
 }
 
 /// The corners of a facet without repeated ones, starting at the lowest number and going towards the lower of its
@@ -96,12 +96,12 @@ void FacetTopology::weld(FacetList const& list, double relative) {
   Box box;
   for (Vec3 const& p : list.points) box.include(p);
   double const size = list.points.empty() ? 0 : distance(box.low, box.high);
-  std::vector<int> const stands_for = coincident(list, relative * size);
+  std::vector<int> const representative = coincident(list, relative * size);
   std::vector<int> kept;
   std::vector<char> used(list.points.size(), 0);
   for (auto const& facet : list.facets)
     for (int const c : facet)
-      if (c >= 0) used[stands_for[c]] = 1;
+      if (c >= 0) used[representative[c]] = 1;
   for (int n = 0; n < int(list.points.size()); ++n)
     if (used[n]) kept.push_back(n);
   std::sort(kept.begin(), kept.end(), [&](int a, int b) { return before(list.points[a], list.points[b]); });
@@ -114,7 +114,7 @@ void FacetTopology::weld(FacetList const& list, double relative) {
   for (int f = 0; f < int(list.facets.size()); ++f) {
     std::vector<int> corners;
     for (int const c : list.facets[f])
-      if (c >= 0) corners.push_back(number[stands_for[c]]);
+      if (c >= 0) corners.push_back(number[representative[c]]);
     if (corners = in_order(std::move(corners)); !corners.empty()) good.emplace_back(std::move(corners), f);
   }
   std::sort(good.begin(), good.end());

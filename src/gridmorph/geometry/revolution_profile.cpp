@@ -205,7 +205,7 @@ class Slopes {
   /// A kink is a second difference that stands out from those beside it, alone (kink at a point) or with its neighbour
   /// (kink between two points). In a smooth profile a second difference is about the mean of those beside it.
   void find_kinks() {
-    constexpr double stands_out = 4;
+    constexpr double outlier = 4;
     kink_.assign(p_.size(), false);
     std::vector<double> d(p_.size(), 0), floor(p_.size(), 0);
     for (int i = 1; i + 1 < n_; ++i) {
@@ -218,10 +218,10 @@ class Slopes {
       double around = std::max(beside(i - 1), beside(i + 1));
       if (i == 1) around = std::max(around, beside(3));
       if (i + 2 == n_) around = std::max(around, beside(n_ - 4));
-      if (d[i] > stands_out * around + floor[i]) kink_[i] = true;
+      if (d[i] > outlier * around + floor[i]) kink_[i] = true;
       if (i < 2 || i + 3 >= n_) continue;
       around = std::max(beside(i - 1), beside(i + 2));
-      if (std::min(d[i], d[i + 1]) > stands_out * around + std::max(floor[i], floor[i + 1]))
+      if (std::min(d[i], d[i + 1]) > outlier * around + std::max(floor[i], floor[i + 1]))
         kink_[i] = kink_[i + 1] = true;
     }
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gridmorph/guard/guard.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/plan/guarded_elements.hpp>
 

@@ -1,7 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/kernels/symmetric_eigen.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>

@@ -1,7 +1,7 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/motion_path.hpp>
 #include <gridmorph/guard/relaxation.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/plan_access.hpp>

@@ -3,7 +3,6 @@
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/core/require_kokkos.hpp>
 #include <gridmorph/mesh/extent.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 

@@ -2,9 +2,9 @@
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/core/index.hpp>
 #include <gridmorph/core/large_pages.hpp>
-#include <gridmorph/core/require_kokkos.hpp>
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@ namespace gridmorph {
 
 namespace {
 
-bool has_middles(Mesh const& mesh) {
+bool has_middle_nodes(Mesh const& mesh) {
   for (Index e = 0; e < mesh.n_elements(); ++e)
     if (mesh.elements.type[e] != ElementType::polyhedron &&
         mesh.elements.nodes[e].size() > mesh.elements.corners(e).size())
@@ -19,9 +19,11 @@ bool has_middles(Mesh const& mesh) {
 }
 
 /// The middles of a boundary face by the corners that they lie amid, ascending.
-std::map<std::vector<Index32>, Index32> middles_by_corners(Mesh const& mesh, BoundaryFaces const& faces, Index face) {
+std::map<std::vector<Index32>, Index32> middle_nodes_by_corners(Mesh const& mesh, BoundaryFaces const& faces,
+                                                                Index face) {
   std::map<std::vector<Index32>, Index32> out;
-  for (MiddleNode const& m : side_middles(mesh, faces.element[face], faces.side[face])) out.emplace(m.amid, m.node);
+  for (MiddleNode const& m : side_middle_nodes(mesh, faces.element[face], faces.side[face]))
+    out.emplace(m.amid, m.node);
   return out;
 }
 
@@ -45,8 +47,8 @@ class Pairing {
 
  private:
   void add(Connection& c, Index face) {
-    auto const there = middles_by_corners(mesh_, faces_, faces_.across[face]);
-    for (auto const& [corners, node] : middles_by_corners(mesh_, faces_, face)) {
+    auto const there = middle_nodes_by_corners(mesh_, faces_, faces_.across[face]);
+    for (auto const& [corners, node] : middle_nodes_by_corners(mesh_, faces_, face)) {
       if (donor_[node] >= 0) continue;
       std::vector<Index32> image;
       for (Index32 const n : corners) image.push_back(donor_[n]);
@@ -73,7 +75,7 @@ class Pairing {
 }  // namespace
 
 Index pair_middle_nodes(Mesh& mesh, double tolerance) {
-  if (mesh.connections.empty() || !has_middles(mesh)) return 0;
+  if (mesh.connections.empty() || !has_middle_nodes(mesh)) return 0;
   Pairing pairing(mesh, tolerance);
   Index added = 0;
   for (std::size_t c = 0; c < mesh.connections.size(); ++c) added += pairing.add_to(c);

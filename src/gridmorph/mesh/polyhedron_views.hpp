@@ -1,7 +1,7 @@
 // The faces of polyhedra in a memory space, for kernels.
 #pragma once
 
-#include <gridmorph/mesh/elements.hpp>
+#include <gridmorph/mesh/mesh.hpp>
 
 namespace gridmorph {
 

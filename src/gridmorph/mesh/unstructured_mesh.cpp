@@ -56,7 +56,7 @@ std::span<Index32 const> side_nodes(Mesh const& mesh, Index element, int side,
   return {room.data(), kept};
 }
 
-std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side) {
+std::vector<MiddleNode> side_middle_nodes(Mesh const& mesh, Index element, int side) {
   std::vector<MiddleNode> out;
   ElementType const type = mesh.elements.type[element];
   auto const nodes = mesh.elements.nodes[element];

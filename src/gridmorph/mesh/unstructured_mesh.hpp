@@ -25,7 +25,7 @@ struct MiddleNode {
   std::vector<Index32> amid;  ///< corners of the edge, or of the side, ascending
 };
 /// The further nodes on a side: those amid its edges, then the one amid the side where the element has such nodes.
-std::vector<MiddleNode> side_middles(Mesh const& mesh, Index element, int side);
+std::vector<MiddleNode> side_middle_nodes(Mesh const& mesh, Index element, int side);
 
 /// Unit normal along which the elements of a 2-D mesh are positive: the axis along which it is constant, otherwise the
 /// mean normal of its elements. (0, 0, 1) for a 3-D mesh.

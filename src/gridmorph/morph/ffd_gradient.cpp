@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/morph/ffd_gradient.hpp>
+#include <gridmorph/morph/parameter_gradient.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/motion/ffd/ffd_motion.hpp>
 #include <gridmorph/motion/goes_along.hpp>

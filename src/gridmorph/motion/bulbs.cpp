@@ -1,6 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>
-#include <gridmorph/motion/bulbs.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/boundary/boundary.hpp>
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <map>
 #include <string>

@@ -1,4 +1,4 @@
-#include <gridmorph/motion/height_table.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/text.hpp>

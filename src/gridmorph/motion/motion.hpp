@@ -9,7 +9,7 @@
 #pragma once
 
 #include <gridmorph/boundary/regions.hpp>
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/motion/ffd_rule.hpp>
 #include <gridmorph/motion/target_rule.hpp>

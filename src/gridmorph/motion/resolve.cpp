@@ -59,8 +59,8 @@ class Resolver {
       claim(int(r));
     }
     report_conflicts();
-    settle_interfaces();
-    settle_patches();
+    resolve_interfaces();
+    resolve_patches();
     for (std::size_t r = 0; r < motion_.rules.size(); ++r) check_blades(int(r));
     check_regions();
     problems_.throw_if_any<MotionError>();
@@ -216,7 +216,7 @@ class Resolver {
     }
   }
 
-  void settle_interfaces() {
+  void resolve_interfaces() {
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       int const r = interface_claim_[i];
       if (r != unclaimed)
@@ -228,7 +228,7 @@ class Resolver {
       took_default(detail::periodics, free, detail::move_as_one);
   }
 
-  void settle_patches() {
+  void resolve_patches() {
     std::vector<int> symmetry, poles, fixed;
     for (std::size_t p = 0; p < boundary_.patches().size(); ++p) {
       result_.patch[p].rule = patch_claim_[p];

@@ -51,6 +51,7 @@ Index32 BoundaryGroups::make(Index32 begin, Index32 end) {
   for (Index32 k = begin; k < end; ++k) {
     Vec3 const arm = x_[node(k)] - group.centre;
     group.radius = std::max(group.radius, norm(arm));
+    if (along_ == Along::coordinates) continue;
     double const c[3] = {arm.x, arm.y, arm.z}, share = area(k) / group.area;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) group.moments[i][j] += share * c[i] * c[j];

@@ -20,7 +20,7 @@ class BoundaryGroups {
   struct Group {
     Vec3 centre;  ///< weighted by area
     double radius = 0, area = 0;
-    double moments[3][3] = {};   ///< of second order about the centre, over the area
+    double moments[3][3] = {};   ///< of second order about the centre, over the area; of Along::principal_axes alone
     Index32 part[2] = {-1, -1};  ///< -1: a leaf
     Index32 begin = 0, end = 0;  ///< of the ordered nodes
     int height = 0;              ///< 0: a leaf

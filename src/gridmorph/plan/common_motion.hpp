@@ -4,7 +4,6 @@
 // docs/algorithms/common_motion.md has the formulas; kernels/common_motion.hpp applies them.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
 #include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/kernels/common_motion.hpp>
 

@@ -21,21 +21,20 @@ constexpr double opening = 0.2517;
 /// What weighs less than this share of the nearest does not count.
 constexpr double least_weight = 1e-2;
 
-/// Wall nodes, then those of each image.
-struct Sources {
+/// The sources, then those of each image.
+struct Places {
   Coordinates place;
   std::vector<Index32> number;
   std::vector<double> area;
 
-  Sources(Coordinates const& x, std::vector<Index32> const& walls, std::vector<double> const& of_walls,
-          std::vector<RigidTransform> const& images)
-      : place(Index(walls.size() * (1 + images.size()))), number(walls.size() * (1 + images.size())) {
+  Places(Coordinates const& x, FieldSources const& of)
+      : place(Index(of.nodes.size() * (1 + of.images.size()))), number(place.size()) {
     std::iota(number.begin(), number.end(), Index32(0));
     for (std::size_t k = 0; k < number.size(); ++k) {
-      std::size_t const wall = k % walls.size(), image = k / walls.size();
-      Vec3 const p = x[walls[wall]];
-      place.set(Index(k), image == 0 ? p : images[image - 1](p));
-      area.push_back(of_walls[wall]);
+      std::size_t const n = k % of.nodes.size(), image = k / of.nodes.size();
+      Vec3 const p = x[of.nodes[n]];
+      place.set(Index(k), image == 0 ? p : of.images[image - 1](p));
+      area.push_back(of.area[n]);
     }
   }
   /// The largest distance of the walls' own nodes, the first ones, from their centre.
@@ -56,12 +55,14 @@ struct Sources {
 struct PlaceMoments {
   Vec3 x;
   double xx[6] = {};  ///< xx, yy, zz, xy, yz, zx
+  double turns = 0;   ///< the share of walls, whose turns are known
 
-  static PlaceMoments of(Vec3 const& p) {
-    return {p, {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x}};
+  static PlaceMoments of(Vec3 const& p, bool turns) {
+    return {p, {p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x}, turns ? 1.0 : 0.0};
   }
   void add(double w, PlaceMoments const& b) {
     x += w * b.x;
+    turns += w * b.turns;
     for (int k = 0; k < 6; ++k) xx[k] += w * b.xx[k];
   }
 };
@@ -114,25 +115,25 @@ double spread(BoundaryGroups::Group const& group, Vec3 const& x, double d) {
 }  // namespace
 
 LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
-                                           std::vector<Index32> const& walls, std::vector<double> const& area,
-                                           std::vector<RigidTransform> const& images, MeanTurn turns,
+                                           FieldSources const& of, MeanTurn turns,
                                            std::vector<FieldReader> const& readers) {
   LeastSquaresField out;
-  if (walls.empty()) return out;
-  Sources const sources(coordinates, walls, area, images);
+  if (of.n_walls == 0) return out;
+  Places const sources(coordinates, of);
   BoundaryGroups const tree(sources.place, sources.number, sources.area, 0, BoundaryGroups::Along::principal_axes);
-  out.images = images;
-  double const size = sources.size(walls.size());
+  out.images = of.images;
+  double const size = sources.size(of.n_walls);
   out.n_groups = Index32(tree.groups.size());
   tree.add_rows(out.leaves, out.groups);
   out.origin = tree.groups.front().centre;
 
+  bool const walls_alone = of.images.empty() && of.n_walls == of.nodes.size();
   std::vector<double> distance_of(readers.size());
   detail::for_all(host, "gridmorph::least_squares_distance", std::ssize(readers), [&](Index at) {
     FieldReader const& reader = readers[at];
     double const own = reader.distance;
     distance_of[at] =
-        images.empty() ? own : std::min(own, std::max(tree.distance(coordinates[reader.node]), 1e-14 * tree.size()));
+        walls_alone ? own : std::min(own, std::max(tree.distance(coordinates[reader.node]), 1e-14 * tree.size()));
   });
 
   struct Room {
@@ -182,8 +183,9 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
   // With the weights as they are rounded, so that common motions are exact.
   std::vector<PlaceMoments> moment(tree.groups.size());
   for (Index r = 0; r < out.leaves.size(); ++r)
-    moment[out.leaves.target[r]] =
-        mean_of_row(out.leaves, r, [&](Index32 k) { return PlaceMoments::of(sources.place[k] - out.origin); });
+    moment[out.leaves.target[r]] = mean_of_row(out.leaves, r, [&](Index32 k) {
+      return PlaceMoments::of(sources.place[k] - out.origin, std::size_t(k) % of.nodes.size() < of.n_walls);
+    });
   auto const of_group = [&](Index32 g) { return moment[g]; };
   for (Index r = 0; r < out.groups.rows.size(); ++r)
     moment[out.groups.rows.target[r]] = mean_of_row(out.groups.rows, r, of_group);
@@ -196,7 +198,7 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
     double const m = distance_of[r] * distance_of[r];
     Vec3 const x = coordinates[readers[r].node] - out.origin;
     double const kept = turns == MeanTurn::taken_off ? 1 : kept_turn(distance_of[r] / size);
-    out.lean[r] = kept * solved(around, m, x - around.x);
+    out.lean[r] = kept * solved(around, std::max(around.turns, 0.05) * m, x - around.x);
     out.level[r] = 1 - dot(around.x, out.lean[r]);
     out.room[r] = m;
   });

@@ -14,7 +14,7 @@ namespace gridmorph {
 /// The affine motion that fits best, at each node, what the wall nodes around do at the scale of its distance from them
 /// (kernels/least_squares.hpp has the formulas). Far groups of wall nodes count as one.
 struct LeastSquaresField {
-  InterpolationOperator leaves;  ///< wall nodes, by their numbers in the list, then those of each image -> groups
+  InterpolationOperator leaves;  ///< sources, by their numbers in the list, then those of each image -> groups
   LayerRows groups;              ///< groups -> groups, from the smallest on
   Index32 n_groups = 0;
   InterpolationOperator nodes;         ///< groups -> nodes of the mesh
@@ -27,6 +27,14 @@ struct LeastSquaresField {
   [[nodiscard]] bool empty() const { return n_groups == 0; }
 };
 
+/// What the field is made of: wall nodes, then nodes of other boundaries that rules move.
+struct FieldSources {
+  std::vector<Index32> const& nodes;
+  std::size_t n_walls;
+  std::vector<double> area;              ///< of each
+  std::vector<RigidTransform> images{};  ///< that they come again at
+};
+
 /// A node that reads the field, and its distance from the walls.
 struct FieldReader {
   Index32 node = -1;
@@ -37,12 +45,10 @@ struct FieldReader {
 /// fade with the distance, in shares of the size of the walls, since they would carry far nodes with them.
 enum class MeanTurn { taken_off, left };
 
-/// The field of wall nodes, with their areas, and of their images at nodes. Cost O(n log n) in the wall nodes, and per
-/// reader about 40 groups opened in the plane and 100 in space; on all threads of the instance, whose number does not
-/// matter.
+/// The field at nodes; d is their distance from the nearest source. Cost O(n log n) in the sources, and per reader
+/// about 40 groups opened in the plane and 100 in space; on all threads of the instance, whose number does not matter.
 LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
-                                           std::vector<Index32> const& walls, std::vector<double> const& area,
-                                           std::vector<RigidTransform> const& images, MeanTurn turns,
+                                           FieldSources const& of, MeanTurn turns,
                                            std::vector<FieldReader> const& readers);
 
 }  // namespace gridmorph

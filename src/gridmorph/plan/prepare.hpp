@@ -9,7 +9,7 @@ namespace gridmorph {
 
 /// Everything that is known before a displacement is evaluated.
 struct PreparedMorph {
-  Mesh mesh;  ///< with the patches that it lacked, for poles, open faces and regions, and notes on them; its
+  Mesh mesh;  ///< completed by patches for poles, open faces and regions, and notes on them; its
               ///< coordinates are shared
   Links links;
   BoundaryMotion surface;

@@ -1,9 +1,9 @@
 #include <gridmorph/core/instantiate.hpp>
 #include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/jacobian_bounds.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
 #include <gridmorph/quality/element_tables.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <algorithm>
 

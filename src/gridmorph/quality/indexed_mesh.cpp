@@ -1,8 +1,8 @@
 #include <gridmorph/boundary/boundary.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
-#include <gridmorph/quality/certificate.hpp>
 #include <gridmorph/quality/indexed_mesh.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
+#include <gridmorph/quality/validity.hpp>
 
 #include <mutex>
 #include <utility>

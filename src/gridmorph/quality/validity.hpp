@@ -1,15 +1,38 @@
-// Is a mesh that moves still valid? Asked in every time step, answered on the device.
+// Is a mesh valid everywhere, between the corners of its cells too (certify())? Is one that moves still valid, asked in
+// every time step and answered on the device (ValidityCheck)?
 #pragma once
 
 #include <gridmorph/core/built_for.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
+#include <gridmorph/quality/quality.hpp>
 
 #include <Kokkos_Core.hpp>
 
 #include <memory>
+#include <vector>
 
 namespace gridmorph {
+
+/// What is certified. Handedness and signs are those of the baseline.
+template <class MemorySpace>
+struct CertificateInput {
+  CoordinateViews<MemorySpace> coordinates;
+  CoordinateViews<MemorySpace> baseline;  ///< left empty: every cell that is inside out counts as new
+  std::vector<int> handedness = {};       ///< blocks: zone_handedness(); left empty, it is found again
+  std::vector<signed char> signs = {};    ///< elements: numbering_signs(); left empty, they are found again
+  std::vector<int> zones = {};            ///< that are looked at; left empty, all are
+};
+
+/// Looks at every cell; fences. Deterministic. Cost per cell: 260 to 710 flops and its corners read once in blocks,
+/// about 1000 flops in elements; memory: 48 bytes per thousand cells. Throws MeshError for Views that are shorter than
+/// the mesh.
+template <BuiltFor Exec>
+Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typename Exec::memory_space> const& input);
+/// Of a mesh with elements.
+template <BuiltFor Exec>
+Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
+                    CertificateInput<typename Exec::memory_space> const& input);
 
 struct Validity {
   double smallest_determinant = 1;  ///< Measure::determinant_3x3x3 of the worst cell

@@ -153,17 +153,17 @@ void SurfaceWall::find_sides(FacetList const& inward) {
 void SurfaceWall::find_holes(std::vector<Vec3> const& standing) {
   PointNumbers numbers(FacetOptions{}.weld * surface_.size());
   for (Vec3 const& p : standing) numbers.add(p, 0);
-  for (Vec3 const& p : surface_.points) stands_.push_back(numbers.find(p) >= 0 ? 1 : 0);
+  for (Vec3 const& p : surface_.points) on_blade_.push_back(numbers.find(p) >= 0 ? 1 : 0);
 }
 
 /// Whether a foot is on a rim between two nodes that a blade has.
 bool SurfaceWall::at_hole(kernels::FacetFoot const& foot) const {
-  if (stands_.empty() || foot.place != kernels::FacetFoot::Place::rim) return false;
+  if (on_blade_.empty() || foot.place != kernels::FacetFoot::Place::rim) return false;
   kernels::Facet const& facet = surface_.facets[foot.facet];
   kernels::FacetPatch const patch = surface_.view().patch(foot.facet);
   int const corners = facet.n_corners();
   for (int q = 0; q < corners; ++q) {
-    if (facet.neighbour[q] >= 0 || stands_[facet.corner[q]] == 0 || stands_[facet.corner[(q + 1) % corners]] == 0)
+    if (facet.neighbour[q] >= 0 || on_blade_[facet.corner[q]] == 0 || on_blade_[facet.corner[(q + 1) % corners]] == 0)
       continue;
     double u = 0, v = 0;
     patch.on_edge(q, patch.along_edge(q, foot.u, foot.v), u, v);

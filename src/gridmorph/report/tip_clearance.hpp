@@ -1,8 +1,8 @@
 // How far the tips of blades are from the case, before and after, and the walls that clearances are measured to.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
 #include <gridmorph/geometry/facet_surface.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -83,7 +83,7 @@ class SurfaceWall final : public ClearanceWall {
 
   FacetSurface surface_;
   std::vector<signed char> side_;  ///< per facet: 1 where its normals point into the mesh, -1 where out of it
-  std::vector<char> stands_;       ///< per point, whether a blade has it; empty: none has
+  std::vector<char> on_blade_;     ///< per point, whether a blade has it; empty: none has
 };
 
 /// Numbers, in `blade`, of the nodes within a share of the blade's height of its end towards the wall; all of them for

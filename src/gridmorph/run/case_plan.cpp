@@ -2,7 +2,7 @@
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/stopwatch.hpp>
-#include <gridmorph/guard/stepped_morph.hpp>
+#include <gridmorph/guard/guard.hpp>
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/best_order.hpp>

@@ -4,7 +4,6 @@
 
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/guard/shape_smoothing.hpp>
-#include <gridmorph/guard/smoothing_record.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/plan/block_graph.hpp>
 #include <gridmorph/plan/trim_note.hpp>

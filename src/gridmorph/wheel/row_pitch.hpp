@@ -1,7 +1,7 @@
 // How the passages of a row stand beside each other: round the machine axis, or along a straight line.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 #include <gridmorph/wheel/turn.hpp>
 

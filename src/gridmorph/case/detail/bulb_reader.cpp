@@ -1,7 +1,7 @@
 #include <gridmorph/case/detail/rule_kinds.hpp>
 #include <gridmorph/case/detail/sections_reader.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/motion/bulbs.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <fmt/format.h>
 

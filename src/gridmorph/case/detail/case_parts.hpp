@@ -5,7 +5,7 @@
 #include <gridmorph/case/case_file.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/table_reader.hpp>
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 
 #include <map>
 #include <optional>

@@ -4,7 +4,7 @@
 #include <gridmorph/case/case_file.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/table_reader.hpp>
-#include <gridmorph/motion/height_table.hpp>
+#include <gridmorph/motion/inflation_heights.hpp>
 
 #include <string>
 #include <string_view>

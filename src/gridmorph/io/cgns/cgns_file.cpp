@@ -70,7 +70,7 @@ bool same_file(struct stat const& a, struct stat const& b) {
 }
 
 /// Times of files are coarse: one that changed just now could change again unseen.
-bool is_settled(struct stat const& file) { return std::time(nullptr) > file.st_ctim.tv_sec + 2; }
+bool is_at_rest(struct stat const& file) { return std::time(nullptr) > file.st_ctim.tv_sec + 2; }
 
 /// The file that a link leads to; empty where it is this one or not there.
 std::string linked_file(int handle, std::string const& path, double id) {
@@ -189,7 +189,7 @@ Node File::tree() const {
     std::lock_guard const lock(last_tree_access);
     if (known && last_tree && same_file(last_tree->file, own)) return last_tree->tree;
     Node tree = reader().tree(is_entered);
-    if (known && is_settled(own)) last_tree = LastTree{own, tree};
+    if (known && is_at_rest(own)) last_tree = LastTree{own, tree};
     return tree;
   }
   Node root;

@@ -116,7 +116,7 @@ class Joiner {
     auto const add = [&](Index32 n) { out.emplace_back(numbers_.find_or_add(mesh_.coordinates[n], int(n)), n); };
     BoundaryFaces const& faces = topology_.boundary;
     for (Index32 const n : faces.nodes[face]) add(n);
-    for (auto const& m : side_middles(mesh_, faces.element[face], faces.side[face])) add(m.node);
+    for (auto const& m : side_middle_nodes(mesh_, faces.element[face], faces.side[face])) add(m.node);
     std::sort(out.begin(), out.end());
     return out;
   }

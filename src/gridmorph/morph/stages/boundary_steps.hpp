@@ -48,17 +48,17 @@ kernels::PeriodicTable<typename Exec::memory_space> periodic_table(Exec const& e
 template <class Exec>
 using OnList = List<Exec, Vec3> StageField<Exec>::*;
 
-/// Nodes with a slot get what their rule gives, all of them are put back on the surfaces that they lie on: AskNodes.
-/// Slip surfaces are not linear: see slip_edge.hpp.
+/// Nodes with a slot get what their rule gives, all of them are put back on the surfaces that they lie on:
+/// PrescribeNodes. Slip surfaces are not linear: see slip_edge.hpp.
 template <class Exec>
-class AskBoundary {
+class PrescribeAtBoundary {
  public:
-  static inline std::string const region = "gridmorph::AskBoundary";
+  static inline std::string const region = "gridmorph::PrescribeAtBoundary";
 
   /// slot: per node, -1: none; surfaces: per node. back: where the transpose is asked for. label: of its kernel.
-  AskBoundary(Exec const& exec, OnList<Exec> on, std::vector<Index32> const& node, std::vector<Index32> const& slot,
-              CsrGraph const& surfaces, SlipSurfaceTable<typename Exec::memory_space> const& of, bool back,
-              char const* label)
+  PrescribeAtBoundary(Exec const& exec, OnList<Exec> on, std::vector<Index32> const& node,
+                      std::vector<Index32> const& slot, CsrGraph const& surfaces,
+                      SlipSurfaceTable<typename Exec::memory_space> const& of, bool back, char const* label)
       : on_(on),
         label_(label),
         surfaces_(of),
@@ -74,18 +74,18 @@ class AskBoundary {
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     kernels::launch(label_, exec,
-                    kernels::AskNodes<Memory, false>{table_, f.boundary, {}, x, (f.*on_).data(), nullptr});
+                    kernels::PrescribeNodes<Memory, false>{table_, f.boundary, {}, x, (f.*on_).data(), nullptr});
   }
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     kernels::launch(
         label_, exec,
-        kernels::AskNodes<Memory, true>{table_, f.boundary, r.boundary, x, (f.*on_).data(), (r.*on_).data()});
+        kernels::PrescribeNodes<Memory, true>{table_, f.boundary, r.boundary, x, (f.*on_).data(), (r.*on_).data()});
   }
 
   [[nodiscard]] bool bends() const { return bends_; }
   void keep(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
-    kernels::launch("gridmorph::transposed::keep_asked", exec,
-                    kernels::KeepAsked<Memory>{table_, f.boundary, (f.*on_).data(), kept_.data()});
+    kernels::launch("gridmorph::transposed::keep_prescribed", exec,
+                    kernels::KeepPrescribed<Memory>{table_, f.boundary, (f.*on_).data(), kept_.data()});
   }
   void enqueue_kept(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     keep(exec, x, f);
@@ -93,10 +93,10 @@ class AskBoundary {
   }
   /// Gradients of what nodes were asked for become those of their own displacement before; g.given: += those of slots.
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
-    kernels::AskNodes<Memory, false> const ask{table_, {}, {}, x, nullptr, nullptr};
-    kernels::launch("gridmorph::transposed::asked", exec,
-                    kernels::AskNodesBack<Memory>{ask, kept_.data(), (g.*on_).data(), listed_.data()});
-    kernels::gather_rows("gridmorph::transposed::asked::slots", exec, of_slots_, listed_.data(), g.given.data());
+    kernels::PrescribeNodes<Memory, false> const ask{table_, {}, {}, x, nullptr, nullptr};
+    kernels::launch("gridmorph::transposed::prescribed", exec,
+                    kernels::PrescribeNodesBack<Memory>{ask, kept_.data(), (g.*on_).data(), listed_.data()});
+    kernels::gather_rows("gridmorph::transposed::prescribed::slots", exec, of_slots_, listed_.data(), g.given.data());
   }
 
  private:

@@ -27,7 +27,7 @@ namespace gridmorph::stages {
 template <class Exec>
 using ElementStage =
     std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, NearFit<Exec>, FarField<Exec>,
-                 AddTurns<Exec>, StartResidual<Exec>, AskBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>,
+                 AddTurns<Exec>, StartResidual<Exec>, PrescribeAtBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>,
                  GoAlong<Exec>, SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
 
 /// The stages of a plan without parts.

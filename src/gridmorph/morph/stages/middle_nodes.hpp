@@ -79,8 +79,8 @@ void add_followers(std::vector<Step>& to, Exec const& exec, UnstructuredPlan con
   if (at.surfaces.item.size() > 0 || !at.joint.slip.empty())
     surfaces = SlipSurfaceTable<typename Exec::memory_space>(exec, plan.surfaces);
   if (!at.node.empty())
-    to.emplace_back(
-        AskBoundary<Exec>(exec, on, at.node, at.slot, at.surfaces, surfaces, back, "gridmorph::middle::boundary"));
+    to.emplace_back(PrescribeAtBoundary<Exec>(exec, on, at.node, at.slot, at.surfaces, surfaces, back,
+                                              "gridmorph::middle::boundary"));
   if (!at.image_owners.empty())
     to.emplace_back(MeanOfImages<Exec>(on, periodic_table(exec, plan, at.image_owners, at.images_of_owner)));
   if (!at.joint.slip.empty()) to.emplace_back(JointNodes<Exec>(exec, on, plan, at.joint, surfaces, back));

@@ -20,7 +20,9 @@ class NearFit {
 
   /// back: where the transpose is asked for.
   NearFit(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
-      : walls_(upload(exec, plan.driving, name("driving"))),
+      : sources_(uploaded_sources(exec, plan)),
+        beside_(upload(exec, plan.beside_slots, name("beside"))),
+        n_driving_(Index(plan.driving.size())),
         leaves_(upload(exec, plan.fit.leaves, name("leaves"))),
         groups_(upload(exec, plan.fit.groups, name("groups"))),
         images_(upload_images(exec, plan)),
@@ -30,7 +32,7 @@ class NearFit {
         layers_(upload(exec, plan.near, name("layers"))),
         fade_(upload(exec, plan.near_fade, name("fade"))),
         moment_(
-            room_for<kernels::MotionMoments>(exec, plan.driving.size() * (1 + plan.fit.images.size()), name("moment"))),
+            room_for<kernels::MotionMoments>(exec, sources_.extent(0) * (1 + plan.fit.images.size()), name("moment"))),
         group_(room_for<kernels::MotionMoments>(exec, plan.fit.n_groups, name("group"))),
         n_ends_(plan.n_fitted_ends) {
     if (back == nullptr) return;
@@ -41,9 +43,9 @@ class NearFit {
     shares_ = upload(exec, std::vector<float>(plan.near_fade.begin() + std::ptrdiff_t(n_ends_), plan.near_fade.end()),
                      name("shares"));
     layers_back_ = transposed(exec, plan.near, plan.n_nodes, name("layers_back"));
-    InterpolationOperator numbered = rows;
-    for (std::size_t r = 0; r < numbered.target.size(); ++r) numbered.target[r] = Index32(r);
-    readers_of_groups_ = transposed(exec, numbered, name("readers"));
+    TransposedEntries readers;
+    readers.add_by_row(rows);
+    readers_of_groups_ = upload(exec, readers, {}, name("readers")).rows;
     groups_back_ = transposed(exec, plan.fit.groups, Index(plan.fit.n_groups), name("groups_back"));
     leaves_back_ = transposed(exec, plan.fit.leaves, name("leaves_back"));
     compat::fence(exec, "gridmorph::NearFit (host tables may go)");
@@ -51,8 +53,10 @@ class NearFit {
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
+    launch("gridmorph::fit::beside", exec,
+           kernels::FramesFromSlots<Memory>{beside_, f.boundary, f.frames.data() + n_driving_});
     launch("gridmorph::fit::walls", exec,
-           kernels::MomentsOfFrames<Memory>{walls_, images_, x, origin_, f.frames.data(), moment_.data()});
+           kernels::MomentsOfFrames<Memory>{sources_, images_, x, origin_, f.frames.data(), moment_.data()});
     kernels::interpolate("gridmorph::fit::leaves", exec, leaves_,
                          static_cast<kernels::MotionMoments const*>(moment_.data()), group_.data());
     kernels::interpolate_layers("gridmorph::fit::groups", exec, groups_, group_.data());
@@ -80,7 +84,9 @@ class NearFit {
     kernels::gather_rows("gridmorph::transposed::fit::leaves", exec, leaves_back_,
                          static_cast<kernels::MotionMoments const*>(group_.data()), moment_.data());
     launch("gridmorph::transposed::fit::walls", exec,
-           kernels::FramesFromMoments<Memory>{walls_, images_, x, origin_, moment_.data(), g.frames.data()});
+           kernels::FramesFromMoments<Memory>{sources_, images_, x, origin_, moment_.data(), g.frames.data()});
+    launch("gridmorph::transposed::fit::beside", exec,
+           kernels::FramesToSlots<Memory>{beside_, g.frames.data() + n_driving_, g.given.data()});
   }
 
  private:
@@ -95,7 +101,17 @@ class NearFit {
     return out;
   }
 
-  List<Exec, Index32> walls_;
+  /// Fences.
+  static List<Exec, Index32> uploaded_sources(Exec const& exec, UnstructuredPlan const& plan) {
+    std::vector<Index32> sources = plan.driving;
+    for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[s]);
+    auto const out = upload(exec, sources, name("sources"));
+    compat::fence(exec, "gridmorph::NearFit (host tables may go)");
+    return out;
+  }
+
+  List<Exec, Index32> sources_, beside_;
+  Index n_driving_;
   kernels::InterpolationTable<Memory> leaves_;
   kernels::LayerTable<Memory> groups_;
   List<Exec, kernels::WallImage> images_;

@@ -2,7 +2,7 @@
 // and the difference spreads.
 //
 //   StartResidual   where nodes that slide or have images begin, in StageField::work
-//   AskBoundary     rules and slip surfaces
+//   PrescribeAtBoundary     rules and slip surfaces
 //   MeanOfImages    what is periodic moves as one
 //   JointNodes      on the surfaces of all of it
 //   GoAlong         columns on walls that slip, with the mean and the surfaces once more
@@ -35,7 +35,7 @@ class StartResidual {
       : given_(upload(exec, plan.given, name("given"))),
         given_slot_(upload(exec, plan.given_slot, name("given_slot"))),
         residual_(exec, plan.residual, name("residual")),
-        missing_(room_for<Vec3>(exec, plan.given.size(), name("missing"))),
+        listed_(room_for<Vec3>(exec, plan.given.size(), name("listed"))),
         detail_(upload(exec, plan.detail, name("detail"))),
         node_(upload(exec, plan.node, name("node"))),
         fade_(upload(exec, plan.fade, name("fade"))),
@@ -51,9 +51,10 @@ class StartResidual {
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     if (!residual_.empty()) {
-      launch("gridmorph::start::given", exec,
-             kernels::GivenMisses<Memory>{given_, given_slot_, f.boundary, f.u.data(), f.work.data(), missing_.data()});
-      residual_.enqueue(exec, missing_.data());
+      launch(
+          "gridmorph::start::given", exec,
+          kernels::GivenResiduals<Memory>{given_, given_slot_, f.boundary, f.u.data(), f.work.data(), listed_.data()});
+      residual_.enqueue(exec, listed_.data());
       launch("gridmorph::start::missing", exec,
              kernels::FieldMisses<Memory>{given_, residual_.field(), x, f.work.data(), f.work.data()});
       kernels::interpolate_layers("gridmorph::start::layers", exec, detail_, f.work.data());
@@ -73,11 +74,11 @@ class StartResidual {
            kernels::ClearListed<Memory>{detail_.rows.target, g.work.data()});
     launch("gridmorph::transposed::start::missing", exec,
            kernels::ReadWith<Memory, true>{given_, -1, g.work.data(), g.read.data()});
-    clear<Vec3>(exec, missing_);
-    residual_back_->enqueue(exec, x, g.read.data(), missing_.data());
+    clear<Vec3>(exec, listed_);
+    residual_back_->enqueue(exec, x, g.read.data(), listed_.data());
     launch("gridmorph::transposed::start::given", exec,
-           kernels::GivenMissesBack<Memory>{given_, g.work.data(), missing_.data(), g.u.data()});
-    kernels::gather_rows("gridmorph::transposed::start::slots", exec, slots_back_, missing_.data(), g.given.data());
+           kernels::GivenResidualsBack<Memory>{given_, g.work.data(), listed_.data(), g.u.data()});
+    kernels::gather_rows("gridmorph::transposed::start::slots", exec, slots_back_, listed_.data(), g.given.data());
   }
 
  private:
@@ -86,7 +87,7 @@ class StartResidual {
 
   List<Exec, Index32> given_, given_slot_;
   SmoothField<Exec, Vec3> residual_;
-  List<Exec, Vec3> missing_;
+  List<Exec, Vec3> listed_;
   kernels::LayerTable<Memory> detail_;
   List<Exec, Index32> node_;
   List<Exec, float> fade_, detail_fade_;
@@ -149,7 +150,7 @@ class SpreadResidual {
   SpreadResidual(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
       : node_(upload(exec, plan.residual_nodes, name("node"))),
         residual_(exec, plan.residual, name("residual")),
-        missing_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("missing"))),
+        listed_(room_for<Vec3>(exec, plan.residual_nodes.size(), name("listed"))),
         fade_(upload(exec, plan.fade, name("fade"))),
         detail_(upload(exec, plan.residual_detail, name("detail"))),
         detail_begins_(
@@ -167,9 +168,9 @@ class SpreadResidual {
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const {
     using kernels::launch;
     launch("gridmorph::residual_nodes::take", exec,
-           kernels::TakeAsked<Memory>{node_, f.u.data(), f.work.data(), missing_.data()});
+           kernels::TakePrescribed<Memory>{node_, f.u.data(), f.work.data(), listed_.data()});
     if (residual_.empty()) return;
-    residual_.enqueue(exec, missing_.data());
+    residual_.enqueue(exec, listed_.data());
     launch("gridmorph::residual", exec, kernels::AddField<Memory>{fade_, residual_.field(), x, f.u.data()});
     launch("gridmorph::residual::missing", exec,
            kernels::FieldMisses<Memory>{detail_begins_, residual_.field(), x, f.work.data(), f.work.data()});
@@ -179,10 +180,10 @@ class SpreadResidual {
   }
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     clear<Vec3>(exec, g.work);
-    clear<Vec3>(exec, missing_);
+    clear<Vec3>(exec, listed_);
     if (!residual_.empty()) spread_back(exec, x, g);
     kernels::launch("gridmorph::transposed::residual_nodes::take", exec,
-                    kernels::TakeAskedBack<Memory>{node_, g.u.data(), g.work.data(), missing_.data()});
+                    kernels::TakePrescribedBack<Memory>{node_, g.u.data(), g.work.data(), listed_.data()});
   }
 
  private:
@@ -201,12 +202,12 @@ class SpreadResidual {
            kernels::ReadWithShare<Memory>{fade_, g.u.data(), g.read.data()});
     launch("gridmorph::transposed::residual::missing", exec,
            kernels::ReadWith<Memory, true>{detail_begins_, -1, g.work.data(), g.read.data()});
-    residual_back_->enqueue(exec, x, g.read.data(), missing_.data());
+    residual_back_->enqueue(exec, x, g.read.data(), listed_.data());
   }
 
   List<Exec, Index32> node_;
   SmoothField<Exec, Vec3> residual_;
-  List<Exec, Vec3> missing_;
+  List<Exec, Vec3> listed_;
   List<Exec, float> fade_;
   kernels::LayerTable<Memory> detail_;
   List<Exec, Index32> detail_begins_;  ///< boundary nodes that it reads
@@ -223,8 +224,8 @@ void add_other_boundaries(std::vector<Step>& to, Exec const& exec, UnstructuredP
   OnList<Exec> const on = &StageField<Exec>::work;
   SlipSurfaceTable<typename Exec::memory_space> const surfaces(exec, plan.surfaces);
   to.emplace_back(StartResidual<Exec>(exec, plan.start, plan.n_nodes, back));
-  to.emplace_back(AskBoundary<Exec>(exec, on, plan.residual_nodes, plan.residual_slot, plan.residual_surfaces, surfaces,
-                                    back != nullptr, "gridmorph::residual_nodes"));
+  to.emplace_back(PrescribeAtBoundary<Exec>(exec, on, plan.residual_nodes, plan.residual_slot, plan.residual_surfaces,
+                                            surfaces, back != nullptr, "gridmorph::residual_nodes"));
   auto const images = periodic_table(exec, plan, plan.image_owners, plan.images_of_owner);
   auto const join = [&](UnstructuredPlan::JointNodes const& joint) {
     if (!plan.image_owners.empty()) to.emplace_back(MeanOfImages<Exec>(on, images));

@@ -31,13 +31,20 @@ struct TransposedEntries {
   /// Of the rows whose targets count.
   template <class Counts>
   void add(InterpolationOperator const& rows, Counts const& counts) {
-    for (std::size_t r = 0; r < rows.target.size(); ++r) {
-      if (!counts(rows.target[r])) continue;
-      Index const from = rows.first[r], to = rows.first[r + 1];
-      double first = 1;
-      for (Index k = from + 1; k < to; ++k) first -= double(rows.weight[k]);
-      for (Index k = from; k < to; ++k) add(rows.item[k], rows.target[r], k == from ? first : double(rows.weight[k]));
-    }
+    for (std::size_t r = 0; r < rows.target.size(); ++r)
+      if (counts(rows.target[r])) add_row(rows, r, rows.target[r]);
+  }
+  /// The targets being the numbers of the rows.
+  void add_by_row(InterpolationOperator const& rows) {
+    for (std::size_t r = 0; r < rows.target.size(); ++r) add_row(rows, r, Index32(r));
+  }
+
+ private:
+  void add_row(InterpolationOperator const& rows, std::size_t r, Index32 target) {
+    Index const from = rows.first[r], to = rows.first[r + 1];
+    double first = 1;
+    for (Index k = from + 1; k < to; ++k) first -= double(rows.weight[k]);
+    for (Index k = from; k < to; ++k) add(rows.item[k], target, k == from ? first : double(rows.weight[k]));
   }
 };
 

@@ -1,7 +1,7 @@
 // Along which coordinate a target of sections measures the span, and which way it points.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/motion/target_rule.hpp>
 
 #include <optional>

@@ -18,12 +18,7 @@ std::vector<int> line(PatchGrid const& grid, int direction, int at, int from, in
 
 SurfaceSpread::SurfaceSpread(PatchSurface const& surface, std::vector<char> const& known, std::vector<Vec3> image,
                              Edges const& edges)
-    : surface_(surface),
-      points_(surface.points),
-      known_(known),
-      edges_(edges),
-      settled_(known),
-      image_(std::move(image)) {
+    : surface_(surface), points_(surface.points), known_(known), edges_(edges), set_(known), image_(std::move(image)) {
   std::vector<Vec3> from, moved;
   for (std::size_t v = 0; v < points_.size(); ++v)
     if (known[v] != 0) {
@@ -33,15 +28,15 @@ SurfaceSpread::SurfaceSpread(PatchSurface const& surface, std::vector<char> cons
   carried_ = fit_affine(from, moved, points_);
 }
 
-void SurfaceSpread::settle(int v, Vec3 const& residual) {
-  settled_[v] = 1;
+void SurfaceSpread::set(int v, Vec3 const& residual) {
+  set_[v] = 1;
   image_[v] = (*place_)(v, points_[v] + carried_(points_[v]) + residual);
 }
 
 std::vector<Vec3> SurfaceSpread::run(Place const& place) {
   place_ = &place;
   if (!surface_.gridded) {
-    settle_by_layers();
+    set_by_layers();
     return image_;
   }
   struct Box {
@@ -62,24 +57,24 @@ std::vector<Vec3> SurfaceSpread::run(Place const& place) {
     for (int const b : {box.b0, box.b1}) sides.push_back(line(*box.grid, 0, b, box.a0, box.a1));
     for (int const a : {box.a0, box.a1}) sides.push_back(line(*box.grid, 1, a, box.b0, box.b1));
   }
-  settle_corners(std::move(corners));
+  set_corners(std::move(corners));
   // Short sides first: a long one that others end on finds their ends in place.
   std::stable_sort(sides.begin(), sides.end(), [](auto const& s, auto const& t) { return s.size() < t.size(); });
-  for (auto const& side : sides) settle_side(side);
-  for (Box const& box : boxes) settle_inside(*box.grid, box.a0, box.a1, box.b0, box.b1);
+  for (auto const& side : sides) set_side(side);
+  for (Box const& box : boxes) set_inside(*box.grid, box.a0, box.a1, box.b0, box.b1);
   return image_;
 }
 
-void SurfaceSpread::settle_by_layers() {
+void SurfaceSpread::set_by_layers() {
   auto const neighbours = surface_.neighbours();
   std::vector<int> layer;
   for (std::size_t v = 0; v < points_.size(); ++v)
-    if (settled_[v] != 0) layer.push_back(int(v));
+    if (set_[v] != 0) layer.push_back(int(v));
   while (!layer.empty()) {
     std::vector<int> next;
     for (int const v : layer)
       for (int const n : neighbours[v])
-        if (settled_[n] == 0) next.push_back(n);
+        if (set_[n] == 0) next.push_back(n);
     std::sort(next.begin(), next.end());
     next.erase(std::unique(next.begin(), next.end()), next.end());
     std::vector<Vec3> residuals;
@@ -87,19 +82,19 @@ void SurfaceSpread::settle_by_layers() {
       Vec3 sum;
       double weights = 0;
       for (int const n : neighbours[v])
-        if (settled_[n] != 0) {
+        if (set_[n] != 0) {
           double const w = 1 / std::max(distance(points_[v], points_[n]), 1e-30);
           sum += w * residual(n);
           weights += w;
         }
       residuals.push_back((1 / weights) * sum);
     }
-    for (std::size_t n = 0; n < next.size(); ++n) settle(next[n], residuals[n]);
+    for (std::size_t n = 0; n < next.size(); ++n) set(next[n], residuals[n]);
     layer = std::move(next);
   }
   // What hangs together with nothing known goes along.
   for (std::size_t v = 0; v < points_.size(); ++v)
-    if (settled_[v] == 0) settle(int(v), {});
+    if (set_[v] == 0) set(int(v), {});
 }
 
 /// Where a patch is cut along a direction: its ends, and grid lines that an edge runs along.
@@ -115,14 +110,14 @@ std::vector<int> SurfaceSpread::cuts(PatchGrid const& grid, int direction) const
   return out;
 }
 
-void SurfaceSpread::settle_corners(std::vector<int> corners) {
+void SurfaceSpread::set_corners(std::vector<int> corners) {
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<int> known;
   for (std::size_t v = 0; v < points_.size(); ++v)
     if (known_[v] != 0) known.push_back(int(v));
   for (int const v : corners) {
-    if (settled_[v] != 0) continue;
+    if (set_[v] != 0) continue;
     Vec3 sum;
     double weights = 0;
     for (int const k : known) {
@@ -131,28 +126,28 @@ void SurfaceSpread::settle_corners(std::vector<int> corners) {
       sum += w * residual(k);
       weights += w;
     }
-    settle(v, weights > 0 ? (1 / weights) * sum : Vec3{});
+    set(v, weights > 0 ? (1 / weights) * sum : Vec3{});
   }
 }
 
-void SurfaceSpread::settle_side(std::vector<int> const& side) {
+void SurfaceSpread::set_side(std::vector<int> const& side) {
   std::vector<double> length{0};
   for (std::size_t n = 1; n < side.size(); ++n)
     length.push_back(length.back() + distance(points_[side[n - 1]], points_[side[n]]));
   for (std::size_t begin = 0; begin + 1 < side.size();) {
     std::size_t end = begin + 1;
-    while (settled_[side[end]] == 0) ++end;  // the last one is a corner
+    while (set_[side[end]] == 0) ++end;  // the last one is a corner
     Vec3 const first = residual(side[begin]), last = residual(side[end]);
     double const whole = length[end] - length[begin];
     for (std::size_t n = begin + 1; n < end; ++n) {
       double const t = whole > 0 ? (length[n] - length[begin]) / whole : 0;
-      settle(side[n], (1 - t) * first + t * last);
+      set(side[n], (1 - t) * first + t * last);
     }
     begin = end;
   }
 }
 
-void SurfaceSpread::settle_inside(PatchGrid const& grid, int a0, int a1, int b0, int b1) {
+void SurfaceSpread::set_inside(PatchGrid const& grid, int a0, int a1, int b0, int b1) {
   auto const r = [&](int a, int b) { return residual(grid.at(a, b)); };
   std::size_t const na = std::size_t(a1 - a0) + 1, nb = std::size_t(b1 - b0) + 1;
   std::vector<double> s(na * nb, 0), t(na * nb, 0);  // shares of the length of each grid line
@@ -168,11 +163,11 @@ void SurfaceSpread::settle_inside(PatchGrid const& grid, int a0, int a1, int b0,
   for (int b = b0 + 1; b < b1; ++b)
     for (int a = a0 + 1; a < a1; ++a) {
       int const v = grid.at(a, b);
-      if (settled_[v] != 0) continue;
+      if (set_[v] != 0) continue;
       std::size_t const n = std::size_t(a - a0) + na * std::size_t(b - b0);
       double const p = s[n], q = t[n];
-      settle(v, (1 - p) * r(a0, b) + p * r(a1, b) + (1 - q) * r(a, b0) + q * r(a, b1) - ((1 - p) * (1 - q)) * r00 -
-                    (p * (1 - q)) * r10 - ((1 - p) * q) * r01 - (p * q) * r11);
+      set(v, (1 - p) * r(a0, b) + p * r(a1, b) + (1 - q) * r(a, b0) + q * r(a, b1) - ((1 - p) * (1 - q)) * r00 -
+                 (p * (1 - q)) * r10 - ((1 - p) * q) * r01 - (p * q) * r11);
     }
 }
 

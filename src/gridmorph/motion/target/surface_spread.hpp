@@ -34,13 +34,13 @@ class SurfaceSpread {
   std::vector<Vec3> run(Place const& place);
 
  private:
-  void settle(int v, Vec3 const& residual);
+  void set(int v, Vec3 const& residual);
   [[nodiscard]] Vec3 residual(int v) const { return image_[v] - points_[v] - carried_(points_[v]); }
   [[nodiscard]] std::vector<int> cuts(PatchGrid const& grid, int direction) const;
-  void settle_corners(std::vector<int> corners);
-  void settle_side(std::vector<int> const& side);
-  void settle_by_layers();
-  void settle_inside(PatchGrid const& grid, int a0, int a1, int b0, int b1);
+  void set_corners(std::vector<int> corners);
+  void set_side(std::vector<int> const& side);
+  void set_by_layers();
+  void set_inside(PatchGrid const& grid, int a0, int a1, int b0, int b1);
 
   PatchSurface const& surface_;
   std::vector<Vec3> const& points_;
@@ -48,7 +48,7 @@ class SurfaceSpread {
   Edges const& edges_;
   AffineDisplacement carried_;
   Place const* place_ = nullptr;
-  std::vector<char> settled_;
+  std::vector<char> set_;
   std::vector<Vec3> image_;
 };
 

@@ -156,10 +156,10 @@ SectionMapping map_sections(Boundary const& boundary, PatchSurface const& given,
   if (rule.span && !(norm(*rule.span) > 0)) throw MotionError(name + ": the span direction has no length");
   if (!(norm(rule.flow) > 0)) throw MotionError(name + ": the flow direction has no length");
   SpanCoordinate const span(rule, axis);
-  std::vector<Vec3> middles;
+  std::vector<Vec3> centres;
   for (TargetSection const& s : rule.target->sections)
-    if (!s.points.empty()) middles.push_back(middle(s.points));
-  JoinedSides const joined = join_sides(boundary, given, middles.empty() ? Vec3{} : middle(middles));
+    if (!s.points.empty()) centres.push_back(middle(s.points));
+  JoinedSides const joined = join_sides(boundary, given, centres.empty() ? Vec3{} : middle(centres));
   PatchSurface const& surface = joined.surface;
   auto const n_turned = std::count(joined.turned.begin(), joined.turned.end(), 1);
   auto const edges = n_turned > 0 ? SectionProfile::Edges::extreme : SectionProfile::Edges::farthest;

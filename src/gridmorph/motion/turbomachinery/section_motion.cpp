@@ -111,7 +111,7 @@ double SectionMotion::bow_integral(double span) const {
 
 Vec3 SectionMotion::displacement(Vec3 const& point) const {
   SectionPoint const p = places_.frame().at(point);
-  auto const [blade, line, at] = places_.seat(p);
+  auto const [blade, line, at] = places_.nearest(p);
   double const h = p.span;
 
   // In chord coordinates from the pivot; every term is a product with a parameter, so that zero moves nothing.

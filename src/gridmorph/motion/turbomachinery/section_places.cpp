@@ -17,8 +17,8 @@ bool SectionPlaces::have_camber() const {
   return std::all_of(blades_.begin(), blades_.end(), [](auto const& b) { return b.has_camber(); });
 }
 
-SectionPlaces::Seat SectionPlaces::seat(SectionPoint const& p) const {
-  Seat best;
+SectionPlaces::Nearest SectionPlaces::nearest(SectionPoint const& p) const {
+  Nearest best;
   double nearest = std::numeric_limits<double>::infinity();
   bool const only = blades_.size() == 1 && blades_.front().images().size() == 1;
   double const period = frame_->period();
@@ -44,7 +44,7 @@ SectionPlaces::Seat SectionPlaces::seat(SectionPoint const& p) const {
 
 SurfacePlace SectionPlaces::at(Vec3 const& point) const {
   SectionPoint const p = frame_->at(point);
-  auto const [blade, line, at] = seat(p);
+  auto const [blade, line, at] = nearest(p);
   double const fraction = std::clamp(at.along / line.length, 0.0, 1.0);
   double const camber = blade->has_camber() ? blade->camber(p.span, line.length, fraction) : 0.0;
   SurfacePlace out;

@@ -19,19 +19,19 @@ class SectionPlaces {
                 std::vector<int> const& patches, SlipSurfaces const& surfaces, std::vector<std::string>& notes);
 
   /// The blade whose camber line is nearest, and the point as that blade sees it.
-  struct Seat {
+  struct Nearest {
     SectionGeometry const* blade = nullptr;
     ChordLine line;
     ChordPoint point;
   };
-  /// The seat of a point. Cost: O(log sections), times the blades of the rule.
-  [[nodiscard]] Seat seat(SectionPoint const& p) const;
+  /// The blade nearest to a point. Cost: O(log sections), times the blades of the rule.
+  [[nodiscard]] Nearest nearest(SectionPoint const& p) const;
 
   [[nodiscard]] SectionFrame const& frame() const { return *frame_; }
   /// Whether both sides of every blade are there.
   [[nodiscard]] bool have_camber() const;
 
-  /// The place of a point on the sections. Cost as seat().
+  /// The place of a point on the sections. Cost as nearest().
   [[nodiscard]] SurfacePlace at(Vec3 const& point) const;
 
  private:

@@ -199,7 +199,7 @@ FlowPosition FlowCoordinates::position(MeridionalPoint const& p) const {
   }
   // Secants through the last two places, halves of the bracket where they leave it.
   constexpr int most_steps = 60;
-  constexpr double settled = 2e-16;
+  constexpr double converged = 2e-16;
   double a = lo, f_a = beside(a), at = hi, f = beside(at), f_lo = f_a;
   if (f_a == 0) std::swap(a, at), std::swap(f_a, f);
   for (int n = 0; n < most_steps && f != 0 && f != f_a; ++n) {
@@ -211,7 +211,7 @@ FlowPosition FlowCoordinates::position(MeridionalPoint const& p) const {
     at = next;
     f = beside(at);
     ((f < 0) == (f_lo < 0) ? lo : hi) = at;
-    if (std::abs(at - a) <= settled) break;
+    if (std::abs(at - a) <= converged) break;
   }
   return {at * length_, line(at).along(p)};
 }

@@ -39,7 +39,7 @@ WakePlace WakePlaces::at(Vec3 const& point) const {
 
 WakePlace WakePlaces::place(Vec3 const& point) const {
   SectionPoint const in_section = places_.frame().at(point);
-  auto const [blade, line, at] = places_.seat(in_section);
+  auto const [blade, line, at] = places_.nearest(in_section);
   ChordPoint const inner{(1 - last_part) * line.length,
                          blade->has_camber() ? blade->camber(in_section.span, line.length, 1 - last_part) : 0.0};
   ChordPoint const edge{line.length, 0};

@@ -20,7 +20,7 @@ void BodyStretch::add_place(double w, Vec3 const& arm) {
     for (int j = 0; j < 3; ++j) moments_[i][j] += w * c[i] * c[j];
 }
 
-void BodyStretch::settle() {
+void BodyStretch::find_axes() {
   double v[3][3];
   kernels::diagonalise(moments_, v);
   double largest = 0;

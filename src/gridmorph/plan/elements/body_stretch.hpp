@@ -19,7 +19,7 @@ namespace gridmorph {
 /// Evenly: what the body grows by in all directions alike, where that is nearly all that is left (t = (e - 0.8) /
 /// 0.15): least squares carry the rest, but would let elements around a body that grows become flat.
 ///
-/// Calls in this order: add_place() for all wall nodes, settle(), add_displacement() for all, fit(), add_rest() for
+/// Calls in this order: add_place() for all wall nodes, find_axes(), add_displacement() for all, fit(), add_rest() for
 /// all, decide(). w: their shares in the area of the body; arms: from its centre.
 class BodyStretch {
  public:
@@ -29,7 +29,7 @@ class BodyStretch {
   }
 
   void add_place(double w, Vec3 const& arm);
-  void settle();
+  void find_axes();
   [[nodiscard]] Vec3 lever(double w, Vec3 const& arm) const;
   void add_displacement(Vec3 const& u, Vec3 const& lever) { moments_of_u_.add(u, lever); }
   void fit();

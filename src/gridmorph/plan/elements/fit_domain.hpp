@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/plan/elements/chart.hpp>

@@ -173,7 +173,9 @@ void UnstructuredPlanner::plan_fit() {
   auto const turns_freely = [&](WallBody const& body) { return mesh_.dimension == 2 || norm(body.axis) == 0; };
   bool const taken_off =
       all_walls_turn() && std::all_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(), turns_freely);
-  plan.fit = make_least_squares_field(host_, mesh_.coordinates, plan.driving, areas(plan.driving), images,
+  plan.beside_slots = slots_beside_walls(Beside::anywhere);
+  std::vector<Index32> const sources = smooth_sources();
+  plan.fit = make_least_squares_field(host_, mesh_.coordinates, {sources, plan.driving.size(), areas(sources), images},
                                       taken_off ? MeanTurn::taken_off : MeanTurn::left, readers);
 }
 
@@ -182,9 +184,8 @@ void UnstructuredPlanner::plan_smooth_walls() {
   Box box;
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
     if (near_[n]) box.include(mesh_.coordinates[n]);
-  plan.beside_slots = slots_beside_walls();
-  std::vector<Index32> sources = plan.driving;
-  for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[s]);
+  plan.beside_slots = slots_beside_walls(Beside::near);
+  std::vector<Index32> const sources = smooth_sources();
   plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
                                     box.high, most_lattice_nodes, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
@@ -194,7 +195,13 @@ void UnstructuredPlanner::plan_smooth_walls() {
   }
 }
 
-std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
+std::vector<Index32> UnstructuredPlanner::smooth_sources() const {
+  std::vector<Index32> out = out_.plan.driving;
+  for (Index32 const s : out_.plan.beside_slots) out.push_back(out_.plan.known[s]);
+  return out;
+}
+
+std::vector<Index32> UnstructuredPlanner::slots_beside_walls(Beside which) const {
   using Request = BoundaryRequests::Request;
   BoundaryConditions const& b = out_.boundary;
   auto const& rules = b.motion->motion().rules;
@@ -210,7 +217,8 @@ std::vector<Index32> UnstructuredPlanner::slots_beside_walls() const {
   for (Request const& r : b.requests.requests) {
     auto const n = std::size_t(b.known[r.boundary_node]);
     bool const is_region = r.patch >= int(mesh_.patches.size());
-    if (near_[n] && !drives_[n] && !is_middle_[n] && !is_region && moving.contains(surface(r)))
+    if ((which == Beside::anywhere || near_[n] != 0) && !drives_[n] && !is_middle_[n] && !is_region &&
+        moving.contains(surface(r)))
       is_beside[r.boundary_node] = 1;
   }
   std::vector<Index32> out;

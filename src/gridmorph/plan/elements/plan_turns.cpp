@@ -75,15 +75,19 @@ bool UnstructuredPlanner::all_walls_turn() const {
 bool UnstructuredPlanner::goes_by_least_squares() {
   ElementOptions const& of = options_.elements;
   if (driving_faces_.empty()) return false;
-  if (of.method == NearFieldMethod::least_squares && of.background)
+  bool const asked = of.method == NearFieldMethod::least_squares;
+  if (asked && of.background)
     out_.notes.push_back(
         "near field: by the lattice in place of least squares, since there is a background mesh of your own");
-  if (of.background || of.method != NearFieldMethod::automatic)
-    return !of.background && of.method == NearFieldMethod::least_squares;
-  // Walls around the mesh are no bodies in it.
-  return !of.tube && all_walls_turn() && wall_bodies_.resting.faces.size() > 0 &&
-         std::none_of(mesh_.connections.begin(), mesh_.connections.end(),
-                      [](Connection const& c) { return c.periodic.has_value(); });
+  if (of.background) return false;
+  if (of.method != NearFieldMethod::automatic) return asked;
+  // Walls all around the mesh are nothing amid it. In blade rows whose sides follow the lattice keeps more.
+  Index const all = std::count_if(face_patches_.patch.begin(), face_patches_.patch.end(),
+                                  [](int patch) { return patch != BoundaryFacePatches::connection; });
+  bool const is_periodic = std::any_of(mesh_.connections.begin(), mesh_.connections.end(),
+                                       [](Connection const& c) { return c.periodic.has_value(); });
+  return !of.tube && all > std::ssize(driving_faces_) &&
+         ((all_walls_turn() && !is_periodic) || slots_beside_walls(Beside::anywhere).empty());
 }
 
 void UnstructuredPlanner::add_turning_body(WallBody const& body) {
@@ -227,7 +231,7 @@ BodyStretch UnstructuredPlanner::stretch_of(std::size_t body, std::size_t first,
   }
   BodyStretch out(all.axis[body], kernels::quaternion_of(kernels::best_turn<Vec3>(s, {}, all.axis[body])), fitted_);
   for (std::size_t k = first; k < end; ++k) out.add_place(all.weight[k], arm_in_body(body, k));
-  out.settle();
+  out.find_axes();
   for (std::size_t k = first; k < end; ++k) {
     all.lever.push_back(out.lever(all.weight[k], arm_in_body(body, k)));
     out.add_displacement(moved(k), all.lever.back());
@@ -270,24 +274,24 @@ void UnstructuredPlanner::plan_turns() {
   // Beyond three passages what turns is out of sight, on meshes whose sides go along with the flow too.
   moves_ = periodic_moves(host_, mesh_, out_.graph, out_.boundary, 3);
   for (RigidTransform const& move : moves_)
-    for (std::size_t b = 0; b < n_bodies; ++b) all.images.push_back({Index32(b), move.rotation, move.translation});
+    for (std::size_t b = 0; b < n_bodies; ++b) all.images.push_back({{move.rotation, move.translation}, Index32(b)});
   all.share.assign(all.images.size() * n_nodes, 0);
   all.shift_share.assign(n_bodies * n_nodes, 0);
-  Mask settled = mask();
+  Mask given = mask();
   for (std::size_t n = 0; n < n_nodes; ++n)
     if (body_of[n] >= 0) {
       all.share[std::size_t(body_of[n]) * n_nodes + n] = all.shift_share[std::size_t(body_of[n]) * n_nodes + n] = 1;
-      settled[n] = Settled::all;
+      given[n] = Given::all;
     }
   for (std::size_t n = 0; n < n_nodes; ++n)
     if (!out_.graph.carries(Index32(n)) || out_.graph.neighbours[Index32(n)].empty() || is_known_[n])
-      settled[n] = Settled::all;
-  for (Index32 const n : standing_.node) settled[n] = Settled::all;
+      given[n] = Given::all;
+  for (Index32 const n : standing_.node) given[n] = Given::all;
   // Where no image turns behind them periodic boundaries do not turn.
   if (moves_.size() == 1)
     for (auto const& image : out_.boundary.images)
-      for (Index32 const n : {image.node, image.owner}) settled[n] = std::max<std::uint8_t>(settled[n], Settled::turns);
-  share_turns(settled);
+      for (Index32 const n : {image.node, image.owner}) given[n] = std::max<std::uint8_t>(given[n], Given::turns);
+  share_turns(given);
 }
 
 }  // namespace gridmorph::detail

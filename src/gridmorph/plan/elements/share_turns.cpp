@@ -269,7 +269,7 @@ void Places::shifts(Room& room) const {
 
 }  // namespace
 
-void UnstructuredPlanner::share_turns(Mask const& settled) {
+void UnstructuredPlanner::share_turns(Mask const& given) {
   TurningBodies& all = out_.plan.turns_of_bodies;
   std::size_t const n_nodes = std::size_t(mesh_.n_nodes());
   Places const places({host_, mesh_, topology_.boundary, wall_bodies_.bodies, all.centre, body_sizes_, body_shifts_,
@@ -279,9 +279,9 @@ void UnstructuredPlanner::share_turns(Mask const& settled) {
     Places::Room room = places.room();
     std::size_t const end = std::min(n_nodes, std::size_t(part + 1) * at_once);
     for (std::size_t n = std::size_t(part) * at_once; n < end; ++n) {
-      if (settled[n] == Settled::all) continue;
+      if (given[n] == Given::all) continue;
       places.shares(mesh_.coordinates[Index(n)], room);
-      if (settled[n] == Settled::nothing)
+      if (given[n] == Given::nothing)
         for (std::size_t e = 0; e < room.turn.size(); ++e) all.share[e * n_nodes + n] = room.turn[e];
       for (std::size_t b = 0; b < room.shift.size(); ++b) all.shift_share[b * n_nodes + n] = room.shift[b];
     }

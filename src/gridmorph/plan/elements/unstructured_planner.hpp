@@ -165,10 +165,10 @@ class UnstructuredPlanner {
   /// Plans the turns of bodies; needs the columns.
   void plan_turns();
   /// What nodes have their shares whatever their distances are: those of turns, or all.
-  enum Settled : std::uint8_t { nothing, turns, all };
+  enum Given : std::uint8_t { nothing, turns, all };
   // share_turns.cpp
-  /// Finds the shares in turns and shifts of all nodes that are not settled.
-  void share_turns(Mask const& settled);
+  /// Finds the shares in turns and shifts of all nodes that are not given.
+  void share_turns(Mask const& given);
 
   // plan_domain.cpp
   /// The chart of wrap and background, and what nodes do on the sides that the mesh ends on.
@@ -191,10 +191,13 @@ class UnstructuredPlanner {
   void plan_near(Mask const& seeds);
   /// Plans the smooth part of the walls' motion: it covers the wrap; what it misses fades over a few of its cells.
   void plan_smooth_walls();
-  /// Places in `known` of near nodes on boundaries that do not drive but move all the same, such as the sides of a
-  /// passage that follow its blade: were the near field to learn of them from the residual alone, it would be torn
-  /// where they meet the wall.
-  [[nodiscard]] std::vector<Index32> slots_beside_walls() const;
+  enum class Beside { near, anywhere };
+  /// Places in `known` of nodes, near ones or any, on boundaries that do not drive but move all the same, such as the
+  /// sides of a passage that follow its blade: were the near field to learn of them from the residual alone, it would
+  /// be torn where they meet the wall.
+  [[nodiscard]] std::vector<Index32> slots_beside_walls(Beside which) const;
+  /// What the smooth part is made of: the driving nodes, then those of UnstructuredPlan::beside_slots.
+  [[nodiscard]] std::vector<Index32> smooth_sources() const;
   /// Plans the walls' motion by least squares, for all nodes; what that misses at the ends of columns fades over three
   /// times their height.
   void plan_fit();
