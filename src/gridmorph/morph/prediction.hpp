@@ -71,7 +71,7 @@ struct Prediction {
 /// Elements: all nodes are displaced, beside the mesh. Looked at are all elements between the end of a column and what
 /// is beyond, those with the largest relative displacements, and one in `every`; what the guard then mends is not in
 /// it. Cost: a Morpher and a morph, one pass over the elements for their relative displacements (100 flops each), two
-/// sets of measures for those looked at; 24 bytes per node and 9 per element.
+/// sets of measures for those looked at; 24 bytes per node and 17 per element.
 Prediction predict(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
                    std::span<Vec3 const> boundary, PredictionOptions const& options = {});
 
