@@ -35,8 +35,8 @@ Mesh aircraft() {
 }
 
 /// Of all cells.
-PredictedCells predicted(MorphPlan const& plan) {
-  return predict(HostInstance(), plan, plan.boundary_displacement(), {.every = 1}).all;
+PredictedCells predicted(Mesh const& mesh, MorphPlan const& plan) {
+  return predict(HostInstance(), IndexedMesh(mesh), plan, plan.boundary_displacement(), {.every = 1}).all;
 }
 
 TEST(Bends, OfAWingAreSoundByDefaultWhereOrdersByPriorityInvertCells) {
@@ -44,8 +44,8 @@ TEST(Bends, OfAWingAreSoundByDefaultWhereOrdersByPriorityInvertCells) {
   for (double const share : {0.05, 0.1, 0.2, 0.4}) {
     PlanOptions by_priority;
     by_priority.volume.order = OrderBy::priority;
-    PredictedCells const found = predicted(MorphPlan(mesh, bent_wing(share))),
-                         before = predicted(MorphPlan(mesh, bent_wing(share), by_priority));
+    PredictedCells const found = predicted(mesh, MorphPlan(mesh, bent_wing(share))),
+                         before = predicted(mesh, MorphPlan(mesh, bent_wing(share), by_priority));
     EXPECT_EQ(found.inverted, 0) << share;
     EXPECT_GT(found.kept.value, 0.1) << share;
     if (share >= 0.1) {

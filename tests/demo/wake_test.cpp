@@ -112,7 +112,7 @@ TEST(PassageWake, OfAnyWidthInvertsNothing) {
   Mesh const mesh = small_passage();
   auto const predicted = [&](Motion const& m) {
     MorphPlan const plan(mesh, m);
-    return predict(HostInstance(), plan, plan.boundary_displacement(), {.every = 1}).all;
+    return predict(HostInstance(), IndexedMesh(mesh), plan, plan.boundary_displacement(), {.every = 1}).all;
   };
   Motion without = turned_sections(0.01, 0.1);
   without.regions.clear();

@@ -66,7 +66,7 @@ TEST_P(Orders, FoundByPredictionAreNeverWorseThanByPriorityAndComeOutAsPredicted
   options.volume.order = OrderBy::prediction;
   MorphPlan const plan(GetParam().mesh(), GetParam().motion(1), options);
   EXPECT_EQ(PlanAccess::blocks(plan)->planned.order, found.order) << "another search finds the same";
-  PredictedCells const again = predict(HostInstance(), plan, boundary).all;
+  PredictedCells const again = predict(HostInstance(), IndexedMesh(prepared.mesh), plan, boundary).all;
   EXPECT_EQ(again.scaled_jacobian.value, found.by_prediction.scaled_jacobian.value);
   EXPECT_EQ(again.kept.value, found.by_prediction.kept.value);
   EXPECT_EQ(again.inverted, found.by_prediction.inverted);

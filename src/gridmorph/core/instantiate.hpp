@@ -15,7 +15,7 @@
 //   #undef GRIDMORPH_INSTANTIATE
 //
 // Code that calls such a function with another space fails at link time; it can include gridmorph/kernels/ instead.
-// With GRIDMORPH_DEFAULT_SPACES the list is that of core/host_spaces.hpp and the device's.
+// With GRIDMORPH_DEFAULT_SPACES the list is that of core/built_for.hpp and the device's.
 #pragma once
 
 #include <gridmorph/core/built_for.hpp>

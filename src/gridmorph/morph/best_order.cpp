@@ -241,7 +241,8 @@ Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepar
 
 Prediction predict_closely(HostInstance const& host, MorphPlan const& plan, std::span<Vec3 const> boundary,
                            Prediction const& some) {
-  return predict_closely(host, *PlanAccess::blocks(plan), boundary, some);
+  PreparedMorph const* const blocks = PlanAccess::blocks(plan);
+  return blocks != nullptr ? predict_closely(host, *blocks, boundary, some) : some;
 }
 
 bool is_inverted_by_priority(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,

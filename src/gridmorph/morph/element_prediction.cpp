@@ -1,23 +1,25 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/element_quality.hpp>
-#include <gridmorph/morph/element_prediction.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/element_tables.hpp>
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace gridmorph {
 namespace {
 
 constexpr std::array<char const*, 4> region_names{"columns on walls", "near field", "partially wrapped", "far field"};
 
-/// Where elements lie and which of them are looked at.
-class SampledElements {
+/// Where elements lie.
+class ElementPlaces {
  public:
-  SampledElements(Mesh const& mesh, PreparedUnstructured const& prepared, std::span<signed char const> signs)
-      : mesh_(mesh), prepared_(prepared), signs_(signs), looked_at_(std::size_t(mesh.n_elements()), 0) {
+  ElementPlaces(Mesh const& mesh, PreparedUnstructured const& prepared) : mesh_(mesh), prepared_(prepared) {
     std::vector<char> carried(mesh.n_nodes(), 0);
     for (Index32 const n : prepared.plan.driving) carried[n] = 1;
     for (Index32 const n : prepared.plan.columns.node) carried[n] = 1;
@@ -33,6 +35,7 @@ class SampledElements {
     auto const n = std::ptrdiff_t(corners.size());
     return carried == 0 ? 0 : carried < n ? 1 : 2;
   }
+  /// Number in region_names.
   [[nodiscard]] int region(Index e) const {
     if (in_columns(e) == 2) return 0;
     switch (prepared_.report.regions.element[e]) {
@@ -42,21 +45,11 @@ class SampledElements {
     }
     return 3;
   }
-  [[nodiscard]] bool has_shape(Index e) const { return signs_[e] != 0; }
-
-  void add(Index e) { looked_at_[e] = has_shape(e) ? 1 : 0; }
-  [[nodiscard]] std::vector<Index> elements() const {
-    std::vector<Index> out;
-    for (Index e = 0; e < Index(looked_at_.size()); ++e)
-      if (looked_at_[e] != 0) out.push_back(e);
-    return out;
-  }
 
  private:
   Mesh const& mesh_;
   PreparedUnstructured const& prepared_;
-  std::span<signed char const> signs_;
-  std::vector<char> carried_, looked_at_;
+  std::vector<char> carried_;
 };
 
 struct BeforeAndAfter {
@@ -66,60 +59,57 @@ struct BeforeAndAfter {
   [[nodiscard]] bool lost() const { return after.smallest_corner_jacobian < 0 && before.smallest_corner_jacobian >= 0; }
 };
 
-void take(Index e, BeforeAndAfter const& m, double relative, PredictedElements& to) {
-  auto const smaller = [&](ElementValue& a, double value) {
-    if (a.element >= 0 && !(value < a.value)) return false;
-    a = {value, e};
-    return true;
-  };
-  ++to.elements;
-  if (m.lost() && !m.flat.stays_flat()) ++to.inverted;
-  if (smaller(to.determinant, m.after.determinant_3x3x3)) to.determinant_before = m.before.determinant_3x3x3;
-  if (m.before.determinant_3x3x3 > 0)
-    smaller(to.kept, std::min(1.0, m.after.determinant_3x3x3 / m.before.determinant_3x3x3));
-  smaller(to.angle_deg, m.after.minimum_angle_deg);
-  if (to.relative_displacement.element < 0 || relative > to.relative_displacement.value)
-    to.relative_displacement = {relative, e};
+PredictedCells one_element(Mesh const& mesh, Index e, BeforeAndAfter const& m, double relative) {
+  int const zone = mesh.zone_of_element(e);
+  auto const value = [&](double v) { return CellValue{v, zone, {int(e - mesh.zones[zone].first_element), 0, 0}}; };
+  double const before = m.before.determinant_3x3x3, after = m.after.determinant_3x3x3;
+  PredictedCells one;
+  one.cells = 1;
+  one.inverted = m.lost() && !m.flat.stays_flat() ? 1 : 0;
+  one.determinant = value(after);
+  one.determinant_before = before;
+  if (before > 0) one.kept = value(std::min(1.0, after / before));
+  one.angle_deg = value(m.after.minimum_angle_deg);
+  one.relative_displacement[0] = value(relative);
+  return one;
 }
 
-}  // namespace
-
-ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUnstructured const& prepared,
-                          Coordinates const& displaced, std::span<signed char const> signs,
-                          ElementPredictionOptions const& options) {
+Prediction compare(HostInstance const& host, IndexedMesh const& indexed, PreparedUnstructured const& prepared,
+                   Coordinates const& displaced, PredictionOptions const& options) {
   constexpr Index enough = 20'000;
+  Mesh const& mesh = indexed.mesh();
+  std::vector<signed char> const& signs = indexed.signs();
   Index const n = mesh.n_elements();
-  ElementPrediction out;
-  out.n_elements = n;
+  Prediction out;
+  out.n_cells = n;
   out.every = std::max(1, options.every);
   if (options.every == 0)
     while (n / out.every > enough) out.every *= 2;
 
-  SampledElements sample(mesh, prepared, signs);
+  ElementPlaces const places(mesh, prepared);
   std::vector<double> relative(n, 0);
-  std::vector<char> at_end(n, 0);
+  std::vector<char> wanted(n, 0);
   std::vector<BeforeAndAfter> measures;
   std::vector<Index> looked_at;
   host.visit([&](auto const& exec) {
     auto const tables = detail::element_tables(exec, mesh);
     auto const x = views(mesh.coordinates), y = views(displaced);
     detail::for_all(exec, "gridmorph::predict::relative_displacement", n, [&](Index e) {
-      if (!sample.has_shape(e)) return;
+      if (signs[e] == 0) return;
       relative[e] = tables.relative_displacement(x, y, e);
-      at_end[e] = sample.in_columns(e) == 1 ? 1 : 0;
+      wanted[e] = places.in_columns(e) == 1 ? 1 : 0;
     });
-    for (Index e = 0; e < n; e += out.every) sample.add(e);
-    for (Index e = 0; e < n; ++e)
-      if (at_end[e] != 0) sample.add(e);
-    std::vector<Index> strained(static_cast<std::size_t>(n));
-    for (Index e = 0; e < n; ++e) strained[e] = e;
+    for (Index e = 0; e < n; e += out.every) wanted[e] = 1;
+    std::vector<Index> strained(n);
+    std::iota(strained.begin(), strained.end(), Index(0));
     auto const most = strained.begin() + std::min(n, options.most_strained);
     std::nth_element(strained.begin(), most, strained.end(), [&](Index a, Index b) {
       double const p = relative[a], q = relative[b];
       return p != q ? p > q : a < b;
     });
-    std::for_each(strained.begin(), most, [&](Index e) { sample.add(e); });
-    looked_at = sample.elements();
+    std::for_each(strained.begin(), most, [&](Index e) { wanted[e] = 1; });
+    for (Index e = 0; e < n; ++e)
+      if (wanted[e] != 0 && signs[e] != 0) looked_at.push_back(e);
     measures.resize(looked_at.size());
     detail::for_all(exec, "gridmorph::predict::measures", Index(looked_at.size()), [&](Index k) {
       Index const e = looked_at[k];
@@ -131,24 +121,32 @@ ElementPrediction predict(HostInstance const& host, Mesh const& mesh, PreparedUn
     });
   });
 
-  std::array<PredictedElements, region_names.size()> regions;
+  std::array<PredictedCells, region_names.size()> regions;
   for (std::size_t k = 0; k < looked_at.size(); ++k) {
     Index const e = looked_at[k];
-    take(e, measures[k], relative[e], out.all);
-    take(e, measures[k], relative[e], regions[sample.region(e)]);
+    PredictedCells const one = one_element(mesh, e, measures[k], relative[e]);
+    join(out.all, one);
+    join(regions[places.region(e)], one);
   }
   for (std::size_t r = 0; r < regions.size(); ++r)
-    if (regions[r].elements > 0) out.regions.push_back({region_names[r], regions[r]});
-  std::stable_sort(out.regions.begin(), out.regions.end(), [](PredictedRegion const& a, PredictedRegion const& b) {
-    return a.elements.kept.value < b.elements.kept.value;
-  });
+    if (regions[r].cells > 0) out.groups.push_back({{}, region_names[r], regions[r]});
+  sort_worst_first(out.groups);
   return out;
 }
 
-ElementPrediction predict(HostInstance const& host, Mesh const& mesh, MorphPlan const& plan,
-                          Coordinates const& displaced, std::span<signed char const> signs,
-                          ElementPredictionOptions const& options) {
-  return predict(host, mesh, *PlanAccess::elements(plan), displaced, signs, options);
+}  // namespace
+
+PredictionOf predictions_of_elements(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                     PredictionOptions const& options) {
+  return host.visit([&]<class Exec>(Exec const& exec) -> PredictionOf {
+    Morpher<Exec> const morpher(exec, plan, mesh.mesh().coordinates);
+    return [=, displaced = Coordinates(mesh.n_nodes())](std::span<Vec3 const> boundary) {
+      morpher.positions(exec, Kokkos::View<Vec3 const*, Kokkos::HostSpace>(boundary.data(), boundary.size()),
+                        displaced);
+      compat::fence(exec, "gridmorph::predict (read by the host)");
+      return compare(exec, mesh, *PlanAccess::elements(plan), displaced, options);
+    };
+  });
 }
 
 }  // namespace gridmorph

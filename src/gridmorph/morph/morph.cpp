@@ -87,7 +87,8 @@ void MorphPlan::State::order_chains(HostInstance const& host, MotionSeries const
   Stopwatch watch;
   bool const asked_for = blocks->options.volume.by_prediction();
   constexpr int enough = 8;  // to see whether any is needed
-  WorstPrediction worst(host, *blocks);
+  Predictor predictor(host, *blocks, {});
+  WorstPrediction worst([&](std::span<Vec3 const> boundary) { return predictor.predict(boundary); });
   try {
     if (series.steps == 0) {
       if (!asked_for && is_at_rest(displacement_by_rules())) return;

@@ -104,7 +104,7 @@ class MorphPlan {
   [[nodiscard]] std::vector<PlanSeconds> seconds() const;
 
   /// The same plan, and what a guard did to some of its meshes as a linear part of every morph
-  /// (guard/smoothing_record.hpp).
+  /// (guard/guard.hpp).
   [[nodiscard]] MorphPlan with(std::shared_ptr<SmoothingMap const> smoothing) const;
   /// Null where the plan carries none.
   [[nodiscard]] std::shared_ptr<SmoothingMap const> const& smoothing() const { return smoothing_; }

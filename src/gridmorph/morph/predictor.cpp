@@ -4,7 +4,6 @@
 #include <gridmorph/kernels/flat_cells.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
-#include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/plan/boundary_size.hpp>
 
 #include <algorithm>
@@ -27,26 +26,6 @@ double scaled_jacobian(kernels::HexCell const& cell, double handedness) {
   return kernels::scaled_jacobian(edges, collapsed_edges(edges), handedness);
 }
 
-void join(PredictedCells& all, PredictedCells const& some) {
-  if (some.cells == 0) return;
-  auto const smaller = [](CellValue& a, CellValue const& b) {
-    if (b.zone >= 0 && (a.zone < 0 || b.value < a.value)) a = b;
-  };
-  if (all.scaled_jacobian.zone < 0 || some.scaled_jacobian.value < all.scaled_jacobian.value)
-    all.scaled_jacobian_before = some.scaled_jacobian_before;
-  smaller(all.scaled_jacobian, some.scaled_jacobian);
-  smaller(all.kept, some.kept);
-  smaller(all.determinant, some.determinant);
-  smaller(all.angle_deg, some.angle_deg);
-  for (int d = 0; d < 3; ++d) {
-    CellValue& a = all.relative_displacement[d];
-    CellValue const& b = some.relative_displacement[d];
-    if (a.zone < 0 || b.value > a.value) a = b;
-  }
-  all.cells += some.cells;
-  all.inverted += some.inverted;
-}
-
 }  // namespace
 
 Predictor::Predictor(HostInstance const& host, PreparedMorph const& prepared, PredictionOptions const& options)
@@ -57,9 +36,6 @@ Predictor::Predictor(HostInstance const& host, PreparedMorph const& prepared, Pr
         Mesh const& mesh = planner_.coarse().mesh;
         return zone_handedness(exec, mesh, views(mesh.coordinates));
       })) {}
-
-WorstPrediction::WorstPrediction(HostInstance const& host, MorphPlan const& plan)
-    : WorstPrediction(host, *PlanAccess::blocks(plan)) {}
 
 Prediction Predictor::predict(std::span<Vec3 const> boundary) {
   Plan const plan = planner_.plan(prepared_.planned.order).plan;
@@ -116,6 +92,8 @@ void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<
         if (one.scaled_jacobian_before > 0)
           one.kept = value(std::min(1.0, one.scaled_jacobian.value / one.scaled_jacobian_before));
         one.determinant = value(measures.determinant_3x3x3);
+        if (out.determinant.zone < 0 || one.determinant.value < out.determinant.value)  // or it is not kept
+          one.determinant_before = kernels::determinant_3x3x3(before, handedness);
         one.angle_deg = value(measures.minimum_angle_deg);
         one.relative_displacement = {value(relative.x), value(relative.y), value(relative.z)};
         join(out, one);
@@ -124,33 +102,29 @@ void Predictor::add(CellBox const& box, Coordinates const& morphed, std::vector<
 
 Prediction Predictor::measure(Plan const& plan, Plan const& names, Coordinates const& morphed) const {
   Prediction out;
+  out.n_cells = prepared_.mesh.n_cells();
   out.every = planner_.every();
   std::vector<char> seen(plan.n_nodes, 0);
+  auto const take = [&](PredictedGroup& group) {
+    join(out.all, group.cells);
+    if (group.cells.cells > 0) out.groups.push_back(std::move(group));
+  };
   for (std::size_t s = 0; s < plan.stages.size(); ++s) {
     Stage const& stage = plan.stages[s];
-    std::vector<PredictedChain> chains;
+    std::vector<PredictedGroup> chains;
     for (std::string const& name : names.stages[s].description) chains.push_back({names.stages[s].name, name, {}});
     for (std::size_t b = 0; b < stage.cells.size(); ++b)
       add(stage.cells[b], morphed, seen, chains[stage.chain_of_cells[b]].cells);
-    for (PredictedChain& chain : chains) {
-      join(out.all, chain.cells);
-      if (chain.cells.cells > 0) out.chains.push_back(std::move(chain));
-    }
+    for (PredictedGroup& chain : chains) take(chain);
   }
-  std::map<std::string, PredictedChain> regions;
+  std::map<std::string, PredictedGroup> regions;
   for (std::size_t r = 0; r < plan.regions.size(); ++r) {
-    PredictedChain& region = regions[plan.region_names[r]];
-    region.stage = "given";
-    region.chain = plan.region_names[r];
-    add(plan.regions[r], morphed, seen, region.cells);
+    std::string const& name = plan.region_names[r];
+    add(plan.regions[r], morphed, seen,
+        regions.try_emplace(name, PredictedGroup{"given", name, {}}).first->second.cells);
   }
-  for (auto& [name, region] : regions) {
-    join(out.all, region.cells);
-    if (region.cells.cells > 0) out.chains.push_back(std::move(region));
-  }
-  std::stable_sort(out.chains.begin(), out.chains.end(), [](PredictedChain const& a, PredictedChain const& b) {
-    return a.cells.scaled_jacobian.value < b.cells.scaled_jacobian.value;
-  });
+  for (auto& [name, region] : regions) take(region);
+  sort_worst_first(out.groups);
   return out;
 }
 

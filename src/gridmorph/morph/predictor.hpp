@@ -1,13 +1,29 @@
-// Predictions of one mesh and motion for any order of chains.
+// Predictions of one mesh for many displacements of its boundary, and of blocks for any order of chains.
 #pragma once
 
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/plan/coarse_plan.hpp>
 
+#include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace gridmorph {
+
+/// Takes the worst of both; of equal ones the first.
+void join(PredictedCells& all, PredictedCells const& some);
+/// By the smallest scaled Jacobian, of elements by the smallest share kept.
+bool is_worse(PredictedCells const& a, PredictedCells const& b);
+void sort_worst_first(std::vector<PredictedGroup>& groups);
+
+/// predict() of one mesh and plan for any displacement of the boundary: what predictions share is made once. Serves one
+/// call at a time; keeps mesh and plan.
+using PredictionOf = std::function<Prediction(std::span<Vec3 const> boundary)>;
+PredictionOf predictions(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                         PredictionOptions const& options = {});
+PredictionOf predictions_of_elements(HostInstance const& host, IndexedMesh const& mesh, MorphPlan const& plan,
+                                     PredictionOptions const& options);
 
 /// What an order of chains leads to.
 struct OrderTrial {
@@ -41,17 +57,15 @@ class Predictor {
 /// Of a series of motions at most so many are predicted, spread evenly: they take the time of a plan.
 inline constexpr int most_predicted = 100;
 
-/// The worst of several motions of one plan, by the smallest scaled Jacobian. Borrows what was prepared.
+/// The worst of several motions of one plan.
 class WorstPrediction {
  public:
-  WorstPrediction(HostInstance const& host, PreparedMorph const& prepared) : predictor_(host, prepared, {}) {}
-  /// plan: of blocks.
-  WorstPrediction(HostInstance const& host, MorphPlan const& plan);
+  explicit WorstPrediction(PredictionOf of) : of_(std::move(of)) {}
 
-  /// boundary: displacements of Plan::boundary_nodes at that step.
+  /// boundary: displacements of MorphPlan::boundary_nodes() at that step.
   void look_at(int step, std::vector<Vec3> boundary) {
-    Prediction now = predictor_.predict(boundary);
-    if (!boundary_.empty() && !(now.all.scaled_jacobian.value < prediction_.all.scaled_jacobian.value)) return;
+    Prediction now = of_(boundary);
+    if (step_ >= 0 && !is_worse(now.all, prediction_.all)) return;
     prediction_ = std::move(now);
     step_ = step;
     boundary_ = std::move(boundary);
@@ -62,9 +76,9 @@ class WorstPrediction {
   [[nodiscard]] std::vector<Vec3> const& boundary() const { return boundary_; }
 
  private:
-  Predictor predictor_;
+  PredictionOf of_;
   Prediction prediction_;
-  int step_ = 0;
+  int step_ = -1;  ///< -1: none was looked at
   std::vector<Vec3> boundary_;
 };
 

@@ -15,7 +15,7 @@ namespace gridmorph {
 ///
 /// a fixed linear map: no displacement gives no shift, to the bit; a scaled one scales it; a rate of the boundary's
 /// displacement gives that of the shift. Nodes on slip surfaces go back onto them after it. Made by SmoothingRecord
-/// (guard/smoothing_record.hpp), applied by a Morpher at the end of every call. Cost per call: modes times 24 bytes
+/// (guard/guard.hpp), applied by a Morpher at the end of every call. Cost per call: modes times 24 bytes
 /// read per boundary node and per node that moves, 48 for the latter's displacement.
 struct SmoothingMap {
   int n_modes = 0;

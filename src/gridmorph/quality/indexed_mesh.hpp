@@ -46,7 +46,7 @@ class IndexedMesh {
 };
 
 /// Looks at every cell of these zones, all where none are named, on the default host instance: certify() of
-/// quality/certificate.hpp against the mesh itself.
+/// quality/validity.hpp against the mesh itself.
 Certificate certify(IndexedMesh const& mesh, Coordinates const& morphed, std::vector<int> zones = {});
 
 }  // namespace gridmorph

@@ -6,12 +6,10 @@
 #include <gridmorph/mapping/mapping_report.hpp>
 #include <gridmorph/morph/apply_on_host.hpp>
 #include <gridmorph/morph/best_order.hpp>
-#include <gridmorph/morph/element_prediction.hpp>
 #include <gridmorph/morph/plan_access.hpp>
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/motion/wake/wake_regions.hpp>
 #include <gridmorph/plan/planned_elements.hpp>
-#include <gridmorph/report/element_prediction_text.hpp>
 #include <gridmorph/report/prediction_text.hpp>
 #include <gridmorph/report/target_text.hpp>
 #include <gridmorph/run/block_stages.hpp>
@@ -252,33 +250,15 @@ PlanPrediction CasePlan::predict() {
     Moment const when = case_file_.sequence->moment(step);
     return displacement(&when);
   };
-  if (mesh_.is_structured()) {
-    WorstPrediction worst(exec_, plan_);
-    for (int const step : steps) worst.look_at(step, displacement_at(step));
-    Prediction const closely = predict_closely(exec_, plan_, worst.boundary(), worst.prediction());
-    return of_step(
-        {describe(patched(), closely), prediction_warnings(patched(), closely), prediction_json(patched(), closely)},
-        worst.step());
-  }
-  ElementPrediction worst;
-  int worst_step = 0;
-  Coordinates displaced(mesh_.n_nodes());
-  for (int const step : steps) {
-    morph(displacement_at(step), displaced, nullptr);
-    ElementPrediction now = gridmorph::predict(exec_, mesh_.mesh(), plan_, displaced, mesh_.indexed().signs());
-    if (step > 0 && !(now.all.kept.value < worst.all.kept.value)) continue;
-    worst = std::move(now);
-    worst_step = step;
-  }
-  return of_step({describe(patched(), worst), prediction_warnings(patched(), worst), prediction_json(patched(), worst)},
-                 worst_step);
-}
-
-PlanPrediction CasePlan::of_step(PlanPrediction prediction, int step) const {
-  if (!case_file_.sequence) return prediction;
-  prediction.text = worst_step_text(step, case_file_.sequence->steps) + prediction.text;
-  prediction.json["step"] = step + 1;
-  return prediction;
+  WorstPrediction worst(predictions(exec_, mesh_.indexed(), plan_));
+  for (int const step : steps) worst.look_at(step, displacement_at(step));
+  Prediction const closely = predict_closely(exec_, plan_, worst.boundary(), worst.prediction());
+  PlanPrediction out{describe(patched(), closely), prediction_warnings(patched(), closely),
+                     prediction_json(patched(), closely)};
+  if (!case_file_.sequence) return out;
+  out.text = worst_step_text(worst.step(), case_file_.sequence->steps) + out.text;
+  out.json["step"] = worst.step() + 1;
+  return out;
 }
 
 StepTimes CasePlan::times() const {

@@ -91,7 +91,6 @@ class CasePlan {
   /// The mesh with the patches that planning added.
   [[nodiscard]] Mesh const& patched() const;
   [[nodiscard]] std::vector<StageOutcome> judge_stages(Coordinates const& morphed) const;
-  [[nodiscard]] PlanPrediction of_step(PlanPrediction prediction, int step) const;
 
   LoadedMesh const& mesh_;
   LocatedShocks shocks_;

@@ -46,7 +46,7 @@ class WheelMotion {
 
   /// The same motions at another time: passages() is then of that. The plan stays.
   void move(std::vector<Motion> const& motions) { passages_.take(values_of(motions)); }
-  /// From here on plan() carries what a guard did to some passages (guard/smoothing_record.hpp).
+  /// From here on plan() carries what a guard did to some passages (guard/guard.hpp).
   void freeze(std::shared_ptr<SmoothingMap const> guard) { plan_ = plan_->with(std::move(guard)); }
   /// What a motion, number m at any time, gives MorphPlan::boundary_nodes() where the whole wheel has that blade.
   [[nodiscard]] std::vector<Vec3> displacement(int m, Motion const& motion) const;
