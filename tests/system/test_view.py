@@ -309,9 +309,11 @@ class View(unittest.TestCase):
         both = self.drawn(self.path("a.su2"), self.path("b.su2"), "--color", "none")
         dark = [sum(sum(p) < 720 for row in both.panel(n) for p in row) for n in range(2)]
         self.assertGreater(dark[1], 1.5 * dark[0])
-        self.refused_pair = (self.path("a.su2"), self.path("b.su2"))
         shutil.rmtree(self.out)
-        self.refused(*self.refused_pair, "--color", "displacement", says=("--color displacement",))
+        done = self.view(self.path("a.su2"), self.path("b.su2"), "--color", "displacement")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("error: --color displacement", done.stderr)
+        self.assertIn("warning: '" + self.path("b.su2") + "' is not the mesh of", done.stderr)
 
     def test_a_variable_of_the_solution_colours_the_cells_of_files_that_have_it(self):
         self.stages()
@@ -346,6 +348,30 @@ class View(unittest.TestCase):
         self.assertLessEqual(expected, set(os.listdir(self.out)))
         colours = [len({p for row in Picture(os.path.join(self.out, name)).rows for p in row}) for name in sorted(expected)]
         self.assertGreater(colours[-1], colours[0])
+
+    def test_stages_of_elements(self):
+        ball = self.path("ball")
+        made = run("demo", "ball", "--elements", "50000", "-d", ball)
+        self.assertIn(made.returncode, (0, 1), made.stderr)
+        done = self.view(*(os.path.join(ball, name) for name in ("ball.cgns", "ball_swing.cgns")), "--stages", os.path.join(ball, "stages"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("y = ", Page(os.path.join(self.out, "view.html")).text)  # the plane in which the ball swings
+        for name in ("regions", "layers", "wrap", "background", "background_motion", "near"):
+            rows = Picture(os.path.join(self.out, name + ".png")).rows
+            self.assertGreater(len({p for row in rows for p in row}), 3, name)
+        near, far = (0xe4, 0x88), (0xbf, 0xe3)
+        colours = [p for row in Picture(os.path.join(self.out, "regions.png")).rows for p in row]
+        for red, green in (near, far):
+            self.assertGreater(sum(abs(p[0] - red) < 8 and abs(p[1] - green) < 8 for p in colours), 20)
+
+    def test_meshes_without_walls_and_planes_beside_volumes(self):
+        Box().su2(self.path("box.su2"))
+        plane_su2(self.path("a.su2"))
+        done = self.view(self.path("box.su2"))
+        self.assertEqual((done.returncode, sorted(os.listdir(self.out))), (0, ["section.png", "view.html"]), done.stderr)
+        done = self.view(self.path("a.su2"), self.path("box.su2"))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("no plane mesh", done.stderr)
 
     def test_options_that_cannot_be_are_one_error_and_leave_nothing(self):
         plane_su2(self.path("a.su2"))

@@ -38,6 +38,9 @@ Panel panel_of(std::filesystem::path const& path, std::string name) {
 }
 
 void cut_panel(Panel& panel, Cut const& cut) {
+  if (!cut.levels && !cut.index_plane && !panel.mesh->pictures->is_plane())
+    throw ConfigError(
+        fmt::format("'{}' is no plane mesh, as the first one is; cut both with --plane x=V", panel.path.string()));
   panel.section = page::cut_mesh(*panel.mesh->pictures, panel.mesh->boundary, panel.at, cut, panel.mesh->walls);
   if (panel.section.cell.empty())
     throw ConfigError(
@@ -161,6 +164,8 @@ class View {
       morphed.at = panels_[0].mesh->mesh.coordinates_of(*request_.morphed, {});
     } catch (MeshError const&) {
       morphed = panel_of(*request_.morphed, "second");
+      console_.warn(fmt::format("'{}' is not the mesh of '{}': it is drawn beside it, and what moved is not known",
+                                request_.morphed->string(), request_.mesh.string()));
     }
     panels_.push_back(std::move(morphed));
   }
