@@ -30,8 +30,12 @@ std::string view_page_text(ViewPage const& page) {
   std::string out = page_begin(escaped(page.files) + ": gridmorph view",
                                "<p class=\"dim\">gridmorph " + escaped(page.version) + "</p><h1>" +
                                    escaped(page.files) + "</h1>\n<p class=\"files\">" + escaped(page.summary) + "</p>");
-  for (ViewFigure const& f : page.figures)
-    out += "<section><h3>" + escaped(f.title) + "</h3>\n" + figure_html(f) + key_html(f.key) + "</section>\n";
+  std::string said;  // once for all pictures in a row that have it
+  for (ViewFigure const& f : page.figures) {
+    std::string const key = key_html(f.key);
+    out += "<section><h3>" + escaped(f.title) + "</h3>\n" + (key == said ? "" : key) + figure_html(f) + "</section>\n";
+    said = key;
+  }
   if (page.stages.empty()) return out + page_end();
   out += "<section><h3>Stage by stage</h3>\n<div class=\"steps\" data-shown=\"0\">\n";
   for (ViewFigure const& f : page.stages) out += figure_html(f);

@@ -85,9 +85,10 @@ page::ViewFigure FrameMaker::figure(std::string file, std::string title, std::ve
                               0.5 * std::max(wide(n, 0), wide(n, 1) / ratio)};
     auto const over = overlays.empty() ? std::span<page::Overlay const>() : std::span(overlays[n]);
     drawn[n] = page::section_picture(panels[n].section, panels[n].colour, window, width_, height, over);
-    caption += fmt::format("{}{}: {} to the right from {:.5g} to {:.5g}, {} up from {:.5g} to {:.5g}",
-                           n == 0 ? "" : "; ", panels[n].name, cut_.labels[0], window.centre[0] - window.half_width,
-                           window.centre[0] + window.half_width, cut_.labels[1],
+    if (n > 0 && boxes[n].low == boxes[0].low && boxes[n].high == boxes[0].high) continue;
+    caption += fmt::format("{}{} to the right from {:.5g} to {:.5g}, {} up from {:.5g} to {:.5g}",
+                           n > 0 ? "; " + panels[n].name + ": " : "", cut_.labels[0],
+                           window.centre[0] - window.half_width, window.centre[0] + window.half_width, cut_.labels[1],
                            window.centre[1] - window.half_width * ratio, window.centre[1] + window.half_width * ratio);
   }
   return {std::move(file), std::move(title), std::move(caption), page::side_by_side(drawn), key};
