@@ -266,6 +266,21 @@ class View(unittest.TestCase):
             self.assertTrue(blue, n)
         self.assertIn("near.png", os.listdir(self.out))
 
+    def test_cells_that_move_are_outlined(self):
+        plane_su2(self.path("a.su2"))
+        plane_su2(self.path("b.su2"), move=lambda x, y: (x + 0.1 * x * y, y))
+        words = (self.path("a.su2"), self.path("b.su2"), "--color", "none")
+        rows = []
+        for more in ((), ("--moved", "0.05")):
+            shutil.rmtree(self.out, ignore_errors=True)
+            rows.append(self.drawn(*words, *more).panel(0))
+        size = len(rows[0][0])
+        changed = [(x, y) for y, (a, b) in enumerate(zip(*rows)) for x in range(size) if a[x] != b[x]]
+        self.assertGreater(len(changed), 100)
+        # In the one cell whose four nodes move by 0.05 or more; both meshes together are 1.1 by 1.
+        left, bottom = ((0.75 + 0.033) / 1.166 * size, (1.033 - 0.75) / 1.166 * size)
+        self.assertTrue(all(x >= left - 3 and y <= bottom + 3 for x, y in changed))
+
     def test_displacement_colours_what_moves(self):
         plane_su2(self.path("a.su2"))
         plane_su2(self.path("b.su2"), move=lambda x, y: (x + 0.1 * x * y, y))

@@ -401,6 +401,7 @@ class View {
   void draw_wall(Add const& add) {
     std::string const family = choose_wall();
     std::vector<Ends> ends;
+    ends.reserve(panels_.size());
     for (Panel const& panel : panels_) ends.push_back(ends_of(panel, family));
     if (family.empty() || std::any_of(ends.begin(), ends.end(), [](Ends const& e) { return e.box.empty(); })) {
       page_.summary += ". No wall in this section is known in all meshes: there are no close-ups of one";
