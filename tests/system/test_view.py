@@ -398,6 +398,7 @@ class View(unittest.TestCase):
                             ((self.base, "--span", "0.5", "--plane", "x=0"), ("--span",)),
                             ((self.base, "--span", "2"), ("--span",)),
                             ((self.base, "--box", "1", "0", "0", "1"), ("--box 1 0 0 1", "X0 below X1")),
+                            ((self.base, "--box", "0", "inf", "0", "1"), ("--box 0 inf 0 1",)),
                             ((self.base, "--moved", "0.1"), ("--moved",)),
                             ((self.base, "--color", "displacement"), ("--color displacement",)),
                             ((self.base, "--stages", self.folder.name), ("--stages", self.folder.name)),
@@ -406,6 +407,13 @@ class View(unittest.TestCase):
                             ((self.path("a.su2"), "--span", "0.5"), ("--span", "2-D"))):
             with self.subTest(words=words):
                 self.refused(*words, says=says)
+
+    def test_a_list_of_stages_that_is_none_is_bad_input(self):
+        for text in ("", "[]", '{"stages": 3}', '{"stages": [3]}', '{"stages": [{"number": "x", "name": 7}]}', '{"stages": [{"file": "../a"}]}'):
+            with open(self.path("stages.json"), "w", encoding="utf-8") as file:
+                file.write(text)
+            with self.subTest(text=text):
+                self.refused(self.base, "--stages", self.folder.name, says=())
 
     def test_files_that_nothing_can_be_drawn_of_are_bad_input(self):
         with open(self.path("noise.vtu"), "w", encoding="utf-8") as file:

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ void check_pictures(CommandLine const& options) {
 void check_box(ViewRequest const& request) {
   if (!request.box) return;
   auto const& b = *request.box;
-  if (!(b[0] < b[1] && b[2] < b[3]))
+  if (!(b[0] < b[1] && b[2] < b[3] && std::isfinite(b[1] - b[0]) && std::isfinite(b[3] - b[2])))
     throw ConfigError(fmt::format("--box {} {} {} {}: give X0 below X1 and Y0 below Y1", b[0], b[1], b[2], b[3]));
 }
 

@@ -111,7 +111,7 @@ page::ViewFigure surface_figure(std::string file, std::string title, page::Surfa
 
 namespace {
 
-/// Round the axis that a mesh is periodic about.
+/// The axis that a mesh is periodic about.
 std::optional<Axis> periodic_axis(Mesh const& mesh) {
   std::optional<AxisTurn> turn;
   auto const look = [&](auto const& connections) {

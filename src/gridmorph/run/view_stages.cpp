@@ -79,6 +79,7 @@ std::vector<double> field_of(Panel const& panel, char const* name) {
   std::string why;
   auto out = variable_of(panel, name, true, why);
   if (out.empty()) throw ConfigError("--stages: " + why + "; name the folder that [output] stages wrote");
+  for (double& v : out) v = std::clamp(v, -1.0, 1e9);  // numbers, which whatever a file holds can be counted as
   return out;
 }
 
@@ -181,7 +182,12 @@ void draw_stages(std::filesystem::path const& folder, FrameMaker const& maker, P
                  FlatBox const& box, FlatBox const& near, page::ViewPage& out) {
   auto const is_there = [&](std::string_view name) { return std::filesystem::exists(folder / name); };
   bool any = is_there(stage_list_name);
-  if (any) draw_block_stages(folder, maker, baseline, box, out);
+  try {
+    if (any) draw_block_stages(folder, maker, baseline, box, out);
+  } catch (nlohmann::json::exception const& e) {
+    throw ConfigError(fmt::format("--stages: '{}' is not as [output] stages writes it: {}",
+                                  (folder / stage_list_name).string(), e.what()));
+  }
   auto const [regions, wrap, background, morphed] = stage_names;
   for (auto const& name : stage_names) any = any || is_there(name);
   if (!any)
