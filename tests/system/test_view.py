@@ -265,6 +265,10 @@ class View(unittest.TestCase):
             blue = [p for d in range(-2, 3) for p in [both.panel(n)[row + d][x]] if p[2] > p[0] + 60]
             self.assertTrue(blue, n)
         self.assertIn("near.png", os.listdir(self.out))
+        shutil.rmtree(self.out)
+        self.drawn(self.path("a.su2"), self.path("a.su2"))
+        self.assertNotIn("near.png", os.listdir(self.out))
+        self.assertIn("no wall moves", Page(os.path.join(self.out, "view.html")).text)
 
     def test_cells_that_move_are_outlined(self):
         plane_su2(self.path("a.su2"))

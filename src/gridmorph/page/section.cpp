@@ -157,11 +157,11 @@ io::Picture section_picture(Section const& section, std::span<Colour const> colo
       canvas.line(place(section.corner[begin + c]), place(section.corner[begin + (c + 1) % n]),
                   {0x22, 0x2b, 0x36, opacity}, 0.5);
   }
+  for (Overlay const& overlay : overlays)
+    for (auto const& [a, b] : overlay.lines) canvas.line(place(a), place(b), overlay.colour, overlay.width);
   for (auto const& wall : section.walls)
     canvas.line(place(wall.a), place(wall.b), wall.moves ? Colour{0x1d, 0x5f, 0xd1, 1} : Colour{0x4a, 0x55, 0x63, 1},
                 wall.moves ? 2 : 1);
-  for (Overlay const& overlay : overlays)
-    for (auto const& [a, b] : overlay.lines) canvas.line(place(a), place(b), overlay.colour, overlay.width);
   return canvas.picture();
 }
 

@@ -68,7 +68,7 @@ struct Overlay {
   double width = 1;  ///< pixels
 };
 
-/// Cells in the colours of their polygons, grid lines where they can be told apart, walls, then what lies over them.
+/// Cells in the colours of their polygons, grid lines where they can be told apart, what lies over them, then walls.
 /// Cost: polygons and pixels.
 io::Picture section_picture(Section const& section, std::span<Colour const> colour, Window const& window, int width,
                             int height, std::span<Overlay const> overlays = {});

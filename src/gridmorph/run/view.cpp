@@ -178,6 +178,7 @@ class View {
     for (std::size_t p = 0; p < walls.size(); ++p)
       if (!request_.wall.empty() && is_asked_for(patches[p])) walls[p] = std::max(walls[p], (signed char)0);
     find_moving(walls);
+    moves_ = std::find(walls.begin(), walls.end(), 1) != walls.end();
     for (Panel const& panel : panels_)
       if (auto const& of_panel = panel.mesh->walls; std::find(of_panel.begin(), of_panel.end(), 1) == of_panel.end())
         panel.mesh->focus_on_all_walls();
@@ -306,10 +307,12 @@ class View {
     if (request_.morphed) page_.files += ", " + request_.morphed->filename().string();
     page_.summary = fmt::format("{}: {} {}. {}", request_.mesh.string(), panels_[0].mesh->mesh.n_cells(),
                                 panels_[0].mesh->mesh.kind().cells, cut_.title);
-    if (is_pair())
+    if (moves_)
       page_.summary +=
           ". Baseline left, morphed right; blue: walls that move, light blue: where they were, grey: "
           "walls that stay";
+    else if (is_pair())
+      page_.summary += ". Baseline left, morphed right; no wall moves, blue: walls";
     else if (request_.morphed)
       page_.summary +=
           ". These are two meshes, not one and what was made of it by a morph: how far nodes moved is not known. Blue: "
@@ -324,10 +327,10 @@ class View {
     return FlatBox{{b[0], b[2]}, {b[1], b[3]}};
   }
 
-  /// Around the walls that move; empty where they are not known.
+  /// Around the walls that move; empty where none does.
   [[nodiscard]] FlatBox moving_box() const {
     FlatBox out;
-    if (!is_pair()) return out;
+    if (!moves_) return out;
     for (Panel const& panel : panels_)
       if (FlatBox const box = page::moving_walls(panel.section); !box.empty()) {
         out.take(box.low);
@@ -339,7 +342,7 @@ class View {
   void draw_sections(FrameMaker const& maker) {
     console_.progress("drawing");
     std::vector<std::vector<page::Overlay>> overlays(panels_.size());
-    if (is_pair()) overlays[1].push_back(ghost_of(panels_[0].section));
+    if (moves_) overlays[1].push_back(ghost_of(panels_[0].section));
     if (request_.moved) {
       if (!is_pair())
         throw ConfigError("--moved: outlines cells between a mesh and its morphed mesh; give both, or leave it out");
@@ -435,6 +438,7 @@ class View {
   ViewRequest const& request_;
   Console& console_;
   std::vector<Panel> panels_;
+  bool moves_ = false;  ///< a wall, from the baseline to the morphed mesh
   page::Surface surface_;
   Cut cut_;
   page::ColourKey key_;
