@@ -38,10 +38,8 @@ if(GRIDMORPH_ENABLE_CLI)
   install(FILES "${PROJECT_SOURCE_DIR}/docs/gridmorph.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT runtime)
   install(FILES "${PROJECT_SOURCE_DIR}/scripts/completion/gridmorph.bash"
           DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME gridmorph COMPONENT runtime)
-  # Scripts for users of the command; the others are for work on gridmorph.
-  set(scripts convert-mesh picture picture-fillet picture-unstructured)
-  list(TRANSFORM scripts PREPEND "${PROJECT_SOURCE_DIR}/scripts/")
-  install(PROGRAMS ${scripts} DESTINATION "${data_folder}/scripts" COMPONENT runtime)
+  # A script for users of the command; the others are for work on gridmorph.
+  install(PROGRAMS "${PROJECT_SOURCE_DIR}/scripts/convert-mesh" DESTINATION "${data_folder}/scripts" COMPONENT runtime)
 endif()
 
 configure_package_config_file(

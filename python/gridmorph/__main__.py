@@ -1,6 +1,6 @@
 """The gridmorph command, as it comes with the package: python -m gridmorph COMMAND ...
 
-Everything the command does, and one thing more: `demo` draws pictures of what it made. `view` draws with this Python:
+Everything the command does, and one thing more: `demo` draws pictures of what it made:
 
     python -m gridmorph demo                                    a passage, morphed twice, in demo_passage
     python -m gridmorph morph case.toml
@@ -36,7 +36,6 @@ def _demo(arguments):
 
 def main(arguments=None):
     arguments = sys.argv[1:] if arguments is None else list(arguments)
-    os.environ.setdefault("GRIDMORPH_PYTHON", sys.executable)  # which has what the package needs
     try:
         if arguments[:1] == ["demo"]:
             return _demo(arguments[1:] if len(arguments) > 1 and not arguments[1].startswith("-") else ["passage", *arguments[1:]])

@@ -41,7 +41,7 @@ def zones(**moved):
 class WallsOfAStudy(unittest.TestCase):
     def setUp(self):
         self.files = {"baseline": {}}
-        study.picture.zones_of = lambda path: zones(**self.files[path])
+        study.cgns_blocks.zones_of = lambda path: zones(**self.files[path])
         case = study.Wing("ring", "", "", ["body"], "", "", pivot=0)
         self.change = study.WallChange(case, "baseline")
 

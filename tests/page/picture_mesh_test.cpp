@@ -71,6 +71,27 @@ TEST(Sections, CoverTheWholeCutOnce) {
     }
 }
 
+TEST(Sections, AlongPlanesOfNodesAreThoseOfTheirCoordinate) {
+  Mesh const blocks = box({9, 7, 6}, Shape::straight, 1);  // 2 x 1 x 1.2
+  auto const pictures = of_blocks(blocks);
+  std::vector<signed char> const walls(blocks.patches.size(), 0);
+  for (auto const& [index, x] : {std::pair(0, 0.0), std::pair(3, 0.75), std::pair(8, 2.0)}) {
+    Cut cut = at_x(x);
+    cut.index_plane = {0, index};
+    auto const plane = pictures->index_plane(0, index);
+    for (Facet const& facet : plane.facets)
+      for (Index32 const n : facet.node) EXPECT_NEAR(blocks.coordinates[n].x, x, 1e-12);
+    cut.levels = nullptr;
+    Section const section = cut_mesh(*pictures, {}, blocks.coordinates, cut, walls);
+    EXPECT_EQ(section.cell.size(), 6U * 5U);
+    EXPECT_NEAR(area_of(section), 1.2, 1e-12);
+    double rim = 0;
+    for (auto const& wall : section.walls) rim += std::hypot(wall.a[0] - wall.b[0], wall.a[1] - wall.b[1]);
+    EXPECT_NEAR(rim, 4.4, 1e-12) << index;
+  }
+  EXPECT_TRUE(pictures->index_plane(1, 7).facets.empty());
+}
+
 TEST(Sections, AreEmptyBesideTheMesh) {
   Mesh const blocks = box({4, 4, 4}, Shape::straight, 1);
   EXPECT_TRUE(cut_mesh(*of_blocks(blocks), {}, blocks.coordinates, at_x(-1), {}).cell.empty());

@@ -191,22 +191,74 @@ CLI::App* add_fillet(CLI::App& app, CommandLine& out) {
   return fillet;
 }
 
+/// "x=0.5": a coordinate and its value.
+std::pair<int, double> plane_of(std::string const& text) {
+  auto const sign = text.find('=');
+  auto const letter = std::string("xyz").find(text.substr(0, sign));
+  auto const value = sign == std::string::npos ? std::nullopt : finite_number(text.substr(sign + 1));
+  if (sign != 1 || letter > 2 || !value)
+    throw CLI::ValidationError("--plane " + text, "write it as x=0.5, y=0.5 or z=0.5");
+  return {int(letter), *value};
+}
+
+/// Where meshes are cut: one of several options.
+void add_places(CLI::App& view, ViewRequest& out) {
+  std::vector<CLI::Option*> places{
+      view.add_option_function<std::string>(
+              "--plane", [&out](std::string const& text) { out.plane = plane_of(text); },
+              "Cut where a coordinate has a value; if no place is given: a plane mesh as it is, a machine with "
+              "periodic "
+              "sides at half span, else the plane through what moves, or the walls, that meets most of it")
+          ->option_text("x=V"),
+      view.add_option("--span", out.span, "Cut at a span fraction between hub (0) and case (1)")
+          ->check(CLI::Range(0.0, 1.0))
+          ->option_text("S")};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::string const letter(1, "ijk"[axis]);
+    places.push_back(view.add_option_function<int>(
+                             "--" + letter,
+                             [&out, axis](int n) {
+                               out.index = {axis, n};
+                             },
+                             "Blocks: index plane " + letter + " = N of every zone that has it, 1-based")
+                         ->check(CLI::Range(1, 2'000'000'000))
+                         ->option_text("N"));
+  }
+  for (auto* a : places)
+    for (auto* b : places)
+      if (a != b) a->excludes(b);
+}
+
 CLI::App* add_view(CLI::App& app, CommandLine& out) {
   auto* view = app.add_subcommand(
       "view", "Draw pictures of one mesh, or of a baseline and its morphed mesh side by side: sections and close-ups");
-  view->add_option("mesh", out.input, "Mesh, or the baseline (CGNS or SU2)")->required();
-  view->add_option("morphed", out.second, "Morphed mesh");
-  view->add_option("-o,--out", out.output, "Folder for the pictures; made if missing")
+  view->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")
+      ->required();
+  view->add_option("morphed", out.second, "Morphed mesh, or another one");
+  view->add_option("-o,--out", out.output, "Folder for the pictures and view.html, a page of them; made if missing")
       ->required()
       ->option_text("DIR REQUIRED");
-  for (auto const& option : drawing_options) {
-    std::function<void(std::vector<std::string> const&)> const keep = [&](std::vector<std::string> const& values) {
-      out.drawing.push_back({&option, values});
-    };
-    view->add_option_function(std::string(option.name), keep, std::string(option.text))
-        ->expected(option.values)
-        ->option_text(std::string(option.value_names));
-  }
+  add_places(*view, out.view);
+  view->add_option_function<std::string>(
+          "--axis", [&out](std::string const& letter) { out.view.axis = letter[0] - 'x'; },
+          "Axis of the machine; taken from the periodic interfaces, else x")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->option_text("x|y|z");
+  view->add_option("--wall", out.view.wall, "Wall of the close-ups; the first one met if not given")
+      ->option_text("FAMILY");
+  view->add_option("--box", out.view.box, "One more close-up, box.png")->option_text("X0 X1 Y0 Y1");
+  view->add_option("--color", out.view.color,
+                   "determinant (default for blocks), type (of element; default for elements), displacement, none, or "
+                   "a variable of the flow solution")
+      ->option_text("WHAT");
+  view->add_option("--moved", out.view.moved, "Outline cells that move by at least this")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("LENGTH");
+  view->add_option("--stages", out.view.stages, "Folder that [output] stages names: pictures of them too")
+      ->option_text("DIR");
+  view->add_option("--dpi", out.view.dpi, "Dots per inch; a mesh is 6.4 inches wide (default 150)")
+      ->check(CLI::Range(10, 600))
+      ->option_text("N");
   return view;
 }
 

@@ -47,8 +47,7 @@ constexpr std::array topics{
     Topic{"view",
           "  gridmorph view passage.cgns passage_rotation.cgns --out pictures\n"
           "  gridmorph view wing.cgns wing_morphed.cgns --out pictures --plane y=3.5\n",
-          "demo_passage.md, demo_ball.md (what is drawn of blocks and of elements), report.md (pages with pictures, of "
-          "every format)"},
+          "demo_passage.md, demo_ball.md (what is drawn), report.md (pages of morphs, with pictures)"},
     Topic{"keys", "  gridmorph keys guard\n  gridmorph keys rigid --json\n",
           "case_file.md (the same and more, with examples)"},
     Topic{"demo",

@@ -143,7 +143,7 @@ int main(int argc, char** argv) try {
   auto& options = std::get<CommandLine>(parsed);
   gridmorph::io::FilesRead const read;  // whatever is read from here on is not written over
   using Command = CommandLine::Command;
-  bool const computes = options.command != Command::view && options.command != Command::keys;
+  bool const computes = options.command != Command::keys;
   if (computes) wait_passively(argv);
   Terminal terminal(options.quiet, options.json);
   return report_errors(terminal, [&] {

@@ -1,4 +1,4 @@
-// Files that come along with the program: pages, scripts that draw.
+// Files that come along with the program: pages.
 #pragma once
 
 #include <filesystem>

@@ -7,15 +7,20 @@
 
 namespace gridmorph::page {
 
-Vec3 PictureMesh::centre(Index cell, Coordinates const& at) const {
+std::vector<Index32> PictureMesh::nodes(Index cell) const {
   CellFaces faces_of;
   faces(cell, faces_of);
-  std::vector<Index32> nodes = faces_of.node;
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<Index32> out = std::move(faces_of.node);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+Vec3 PictureMesh::centre(Index cell, Coordinates const& at) const {
   Vec3 sum;
-  for (Index32 const n : nodes) sum += at[n];
-  return (1 / double(nodes.size())) * sum;
+  auto const corners = nodes(cell);
+  for (Index32 const n : corners) sum += at[n];
+  return (1 / double(corners.size())) * sum;
 }
 
 std::string to_string(CellName const& name) {
@@ -42,20 +47,31 @@ class BlockPictures final : public PictureMesh {
     return out;
   }
 
-  Plane plane() const override {
+  Plane plane() const override { return index_plane(2, 0); }
+
+  Plane index_plane(int axis, int index) const override {
     Plane out;
-    for (std::size_t z = 0; z < mesh().zones.size(); ++z) {
+    int const u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    for (int z = 0; z < int(mesh().zones.size()); ++z) {
       Zone const& zone = mesh().zones[z];
-      Index cell = first_[z];
-      for (int j = 0; j + 1 < zone.extent[1]; ++j)
-        for (int i = 0; i + 1 < zone.extent[0]; ++i) {
-          out.facets.push_back({{number(zone, {i, j, 0}), number(zone, {i + 1, j, 0}), number(zone, {i + 1, j + 1, 0}),
-                                 number(zone, {i, j + 1, 0})},
-                                -1});
-          out.cell.push_back(cell++);
+      if (index >= zone.extent[axis]) continue;
+      Index3 p{0, 0, 0};
+      for (p[v] = 0; p[v] + 1 < zone.extent[v]; ++p[v])
+        for (p[u] = 0; p[u] + 1 < zone.extent[u]; ++p[u]) {
+          auto const node = [&](int a, int b) {
+            Index3 q = p;
+            q[axis] = index;
+            q[u] += a;
+            q[v] += b;
+            return number(zone, q);
+          };
+          out.facets.push_back({{node(0, 0), node(1, 0), node(1, 1), node(0, 1)}, -1});
+          Index3 cell = p;
+          cell[axis] = std::min(index, zone.extent[axis] - 2);
+          out.cell.push_back(number_of(z, cell));
         }
     }
-    for (int p = 0; p < int(mesh().patches.size()); ++p) add_sides(p, out.sides);
+    for (int p = 0; p < int(mesh().patches.size()); ++p) add_sides(p, axis, index, out.sides);
     return out;
   }
 
@@ -178,14 +194,17 @@ class BlockPictures final : public PictureMesh {
       }
   }
 
-  void add_sides(int p, std::vector<Edge>& out) const {
+  /// Where a patch meets the plane `index` across an axis.
+  void add_sides(int p, int across, int index, std::vector<Edge>& out) const {
     Patch const& patch = mesh().patches[p];
     auto const [axis, side] = face_of(patch);
-    if (axis < 0 || axis == 2 || patch.range.extent(1 - axis) < 2 || patch.range.begin[2] != 0) return;
+    if (axis < 0 || axis == across || index < patch.range.begin[across] || index >= patch.range.end[across]) return;
     Zone const& zone = mesh().zones[patch.zone];
-    auto const along = std::size_t(1 - axis);
+    auto const along = std::size_t(3 - axis - across);
     for (int a = patch.range.begin[along]; a + 1 < patch.range.end[along]; ++a) {
-      Index3 q = patch.range.begin, r = q;
+      Index3 q = patch.range.begin;
+      q[across] = index;
+      Index3 r = q;
       q[along] = a;
       r[along] = a + 1;
       out.push_back({{number(zone, q), number(zone, r)}, p});

@@ -43,6 +43,8 @@ class ElementPictures final : public PictureMesh {
     return out;
   }
 
+  Plane index_plane(int /*axis*/, int /*index*/) const override { return {}; }
+
   std::vector<Index> crossed(std::span<double const> level) const override {
     std::vector<Index> out;
     for (Index e = 0; e < n_cells(); ++e) {

@@ -8,17 +8,17 @@ namespace gridmorph::page {
 
 using nlohmann::json;
 
-std::string scale_of_displacement(double end) {
+std::string scale_html(ColourScale const& scale, double low, double high, std::string_view what) {
   std::string stops;
   constexpr int n = 10;
   for (int s = 0; s <= n; ++s) {
-    Colour const c = displacement_colours().at(double(s) / n);
+    Colour const c = scale.at(double(s) / n);
     stops += fmt::format(",rgb({} {} {})", c.red, c.green, c.blue);
   }
   return fmt::format(
-      "<div class=\"scale\" role=\"img\" aria-label=\"colours from displacement 0 to {0}\"><span>0</span>"
-      "<i style=\"background:linear-gradient(90deg{1})\"></i><span>{0}</span><em>displacement</em></div>\n",
-      number(end), stops);
+      "<div class=\"scale\" role=\"img\" aria-label=\"colours from {2} {3} to {0}\"><span>{3}</span>"
+      "<i style=\"background:linear-gradient(90deg{1})\"></i><span>{0}</span><em>{2}</em></div>\n",
+      number(high), stops, escaped(what), number(low));
 }
 
 std::string motion_part(ReportPage const& page) {

@@ -1,6 +1,7 @@
 // The parts of a report page, each as HTML; empty where there is nothing to say.
 #pragma once
 
+#include <gridmorph/page/canvas.hpp>
 #include <gridmorph/page/report_page.hpp>
 
 #include <string>
@@ -28,6 +29,14 @@ nlohmann::json worst_of(nlohmann::json const& quality, std::string const& measur
 /// "zone 'A' cell (i 3, j 1, k 7)" for {"zone", "cell"} or {"zone", "element"}.
 std::string place_of(nlohmann::json const& worst);
 /// Scale of colours with its ends.
-std::string scale_of_displacement(double end);
+std::string scale_html(ColourScale const& scale, double low, double high, std::string_view what);
+inline std::string scale_of_displacement(double end) {
+  return scale_html(displacement_colours(), 0, end, "displacement");
+}
+
+/// A page up to what stands in <main>, and from there on; `header` is HTML. The policy in its head lets it ask for
+/// nothing from elsewhere.
+std::string page_begin(std::string_view title, std::string_view header);
+std::string page_end();
 
 }  // namespace gridmorph::page

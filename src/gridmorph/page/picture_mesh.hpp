@@ -66,6 +66,9 @@ class PictureMesh {
     std::vector<Edge> sides;
   };
   [[nodiscard]] virtual Plane plane() const = 0;
+  /// The same of the plane of nodes `index` (from 0) across an axis of blocks; zones without it are left out. Empty of
+  /// elements.
+  [[nodiscard]] virtual Plane index_plane(int axis, int index) const = 0;
 
   /// Cells with a node where level is below 0 and one where it is not, ascending. (n_nodes). Cost O(cells).
   [[nodiscard]] virtual std::vector<Index> crossed(std::span<double const> level) const = 0;
@@ -78,6 +81,8 @@ class PictureMesh {
   /// The cell of a report: number of the zone and MeasureStatistics::worst_cell; -1 where there is none.
   [[nodiscard]] virtual Index number_of(int zone, Index3 const& cell) const = 0;
 
+  /// The nodes of a cell, each once, ascending.
+  [[nodiscard]] std::vector<Index32> nodes(Index cell) const;
   [[nodiscard]] Vec3 centre(Index cell, Coordinates const& at) const;
 
  private:

@@ -36,6 +36,20 @@ std::string repeat_part(ReportPage const& page) {
   return out + "</section>\n";
 }
 
+std::string page_begin(std::string_view title, std::string_view header) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+         "'unsafe-inline'; script-src "
+         "'unsafe-inline'\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
+         "content=\"light dark\">\n"
+         "<link rel=\"icon\" href=\"data:,\">\n<title>" +
+         std::string(title) + "</title>\n<style>\n" + std::string(page_css) + "</style>\n</head>\n<body>\n<header>" +
+         std::string(header) + "</header>\n<main>\n";
+}
+
+std::string page_end() { return "</main>\n<script>\n" + std::string(page_js) + "</script>\n</body>\n</html>\n"; }
+
 std::string page_text(ReportPage const& page) {
   std::string const file = page.report["case_file"].get<std::string>();
   std::string const name = escaped(file.substr(file.find_last_of('/') + 1));
@@ -43,17 +57,9 @@ std::string page_text(ReportPage const& page) {
   std::string const output = page.report["output"].is_null() ? std::string("nothing written")
                                                              : escaped(page.report["output"].get<std::string>());
   std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
-      "'unsafe-inline'; script-src "
-      "'unsafe-inline'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
-      "content=\"light dark\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-      name + ": gridmorph report</title>\n<style>\n" + std::string(page_css) +
-      "</style>\n</head>\n<body>\n<header><p class=\"dim\">gridmorph " +
-      escaped(page.report["gridmorph"].get<std::string>()) + "</p><h1>" + name + "</h1>\n<p class=\"files\">" + input +
-      " \u2192 " + output + "</p></header>\n<main>\n";
+      page_begin(name + ": gridmorph report",
+                 "<p class=\"dim\">gridmorph " + escaped(page.report["gridmorph"].get<std::string>()) + "</p><h1>" +
+                     name + "</h1>\n<p class=\"files\">" + input + " \u2192 " + output + "</p>");
   struct Part {
     char const *id, *title;
     std::string text;
@@ -68,7 +74,7 @@ std::string page_text(ReportPage const& page) {
     if (!part.text.empty()) out += fmt::format("<a href=\"#{}\">{}</a> ", part.id, part.title);
   out += "</nav>\n";
   for (Part const& part : parts) out += part.text;
-  return out + "</main>\n<script>\n" + std::string(page_js) + "</script>\n</body>\n</html>\n";
+  return out + page_end();
 }
 
 }  // namespace gridmorph::page

@@ -42,7 +42,7 @@ Section plane_section(PictureMesh const& mesh, Coordinates const& at, Cut const&
                       std::vector<signed char> const& walls) {
   Section out;
   out.first.push_back(0);
-  auto const plane = mesh.plane();
+  auto const plane = cut.index_plane ? mesh.index_plane((*cut.index_plane)[0], (*cut.index_plane)[1]) : mesh.plane();
   std::vector<Flat> points;
   for (std::size_t f = 0; f < plane.facets.size(); ++f) {
     points.clear();
@@ -51,7 +51,7 @@ Section plane_section(PictureMesh const& mesh, Coordinates const& at, Cut const&
   }
   for (Edge const& side : plane.sides)
     if (side.patch >= 0 && walls[side.patch] >= 0)
-      out.walls.push_back({cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[side.patch] > 0});
+      out.walls.push_back({cut.flat(at[side.node[0]]), cut.flat(at[side.node[1]]), walls[side.patch] > 0, side.patch});
   return out;
 }
 
@@ -98,7 +98,7 @@ Section cut_mesh(PictureMesh const& mesh, std::vector<Facet> const& boundary, Co
       if (crosses(level[a], level[b])) points.push_back(crossing(cut, at, level, a, b));
     }
     if (points.size() == 2 && !wraps(points, cut.period))
-      out.walls.push_back({points[0], points[1], walls[facet.patch] > 0});
+      out.walls.push_back({points[0], points[1], walls[facet.patch] > 0, facet.patch});
   }
   return out;
 }
@@ -120,8 +120,8 @@ FlatBox moving_walls(Section const& section) {
   return box;
 }
 
-io::Picture section_picture(Section const& section, std::vector<float> const& value, Window const& window, int width,
-                            int height) {
+io::Picture section_picture(Section const& section, std::span<Colour const> colour, Window const& window, int width,
+                            int height, std::span<Overlay const> overlays) {
   Canvas canvas(width, height);
   double const scale = 0.5 * width / window.half_width;
   auto const place = [&](Flat const& p) -> Place {
@@ -140,7 +140,7 @@ io::Picture section_picture(Section const& section, std::vector<float> const& va
     }
     inside = high.x > 0 && low.x < width && high.y > 0 && low.y < height;
     if (!inside) continue;
-    canvas.polygon(points, quality_colours().at(double(value[p])));
+    canvas.polygon(points, colour[p]);
     // Twice the area over the longest side: how far apart its lines are.
     double area = 0, longest = 0;
     for (std::size_t c = 0; c < points.size(); ++c) {
@@ -157,6 +157,8 @@ io::Picture section_picture(Section const& section, std::vector<float> const& va
       canvas.line(place(section.corner[begin + c]), place(section.corner[begin + (c + 1) % n]),
                   {0x22, 0x2b, 0x36, opacity}, 0.5);
   }
+  for (Overlay const& overlay : overlays)
+    for (auto const& [a, b] : overlay.lines) canvas.line(place(a), place(b), overlay.colour, overlay.width);
   for (auto const& wall : section.walls)
     canvas.line(place(wall.a), place(wall.b), wall.moves ? Colour{0x1d, 0x5f, 0xd1, 1} : Colour{0x4a, 0x55, 0x63, 1},
                 wall.moves ? 2 : 1);

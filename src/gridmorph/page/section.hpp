@@ -24,6 +24,8 @@ struct Cut {
   std::function<void(Coordinates const& at, std::span<double> level)> levels;
   std::function<Flat(Vec3 const&)> flat;
   double period = 0;  ///< of the second coordinate; polygons wider than half of it are left out; 0: none
+  /// Instead of levels: an axis of blocks and a plane of nodes across it, from 0.
+  std::optional<std::array<int, 2>> index_plane = {};
 };
 
 struct Section {
@@ -33,6 +35,7 @@ struct Section {
   struct Wall {
     Flat a{}, b{};
     bool moves = false;
+    int patch = -1;
   };
   std::vector<Wall> walls;  ///< pieces of patches
 };
@@ -58,9 +61,16 @@ struct FlatBox {
 /// About all walls of a section that move.
 FlatBox moving_walls(Section const& section);
 
-/// Cells coloured by `value` (determinant of each polygon, 1: good), grid lines where they can be told apart, walls.
+/// More lines over a section.
+struct Overlay {
+  std::vector<std::array<Flat, 2>> lines;
+  Colour colour;
+  double width = 1;  ///< pixels
+};
+
+/// Cells in the colours of their polygons, grid lines where they can be told apart, what lies over them, then walls.
 /// Cost: polygons and pixels.
-io::Picture section_picture(Section const& section, std::vector<float> const& value, Window const& window, int width,
-                            int height);
+io::Picture section_picture(Section const& section, std::span<Colour const> colour, Window const& window, int width,
+                            int height, std::span<Overlay const> overlays = {});
 
 }  // namespace gridmorph::page

@@ -175,9 +175,10 @@ std::array<View, 2> find_views(Surface const& surface, std::vector<Vec3> const& 
       directions.push_back(unit_vector(std::cos(angle) * side + std::sin(angle) * front + height_of * up));
   }
   std::vector<double> seen(directions.size(), 0);
+  bool const still = std::all_of(displacement.begin(), displacement.end(), [](Vec3 const& u) { return norm(u) == 0; });
   for (Facet const& f : surface.facets) {
     Vec3 const area = area_of(f, surface.baseline);
-    double moved = 0;
+    double moved = still ? 1 : 0;
     for (std::size_t c = 0; c < f.size(); ++c) moved = std::max(moved, norm(displacement[f.node[c]]));
     for (std::size_t d = 0; d < directions.size(); ++d) seen[d] += moved * std::max(0.0, dot(area, directions[d]));
   }

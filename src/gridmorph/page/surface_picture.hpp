@@ -36,7 +36,8 @@ struct View {
 View plane_view(Surface const& surface, std::vector<Vec3> const& displacement, int width, int height);
 
 /// Two views onto what moves most, nearly opposite: of directions oblique to the axes those from which most of the
-/// moved surface is seen. `up`: of the picture where it can be. displacement: (nodes) of the surface.
+/// moved surface is seen, of the whole where nothing moves. `up`: of the picture where it can be. displacement: (nodes)
+/// of the surface.
 std::array<View, 2> find_views(Surface const& surface, std::vector<Vec3> const& displacement, Vec3 const& up, int width,
                                int height);
 

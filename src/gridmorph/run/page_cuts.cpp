@@ -1,6 +1,8 @@
-// Where a mesh is cut for a report page.
+// Where a mesh is cut for pictures.
+#include <gridmorph/core/error.hpp>
 #include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/run/mesh_cuts.hpp>
 #include <gridmorph/run/run_page.hpp>
 
 #include <fmt/format.h>
@@ -18,19 +20,10 @@ using page::Cut;
 
 constexpr std::array names{"x", "y", "z"};
 
-Cut plane_mesh_cut(Coordinates const& at) {
-  std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (Index n = 0; n < at.size(); ++n)
-    for (int d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], component(at[n], d));
-      high[d] = std::max(high[d], component(at[n], d));
-    }
-  int thin = 2;
-  for (int d = 1; d >= 0; --d)
-    if (high[d] - low[d] < high[thin] - low[thin]) thin = d;
-  int const a = thin == 0 ? 1 : 0, b = thin == 2 ? 1 : 2;
+/// Seen along a coordinate, the other two to the right and up.
+Cut seen_along(int coordinate) {
+  int const a = coordinate == 0 ? 1 : 0, b = coordinate == 2 ? 1 : 2;
   Cut cut;
-  cut.title = "The mesh";
   cut.labels = {names[a], names[b]};
   cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
   return cut;
@@ -103,33 +96,79 @@ class Annulus {
   std::vector<double> inner_, outer_;
 };
 
-/// At constant span, rolled out about the middle of what moves: axial position and radius x angle.
-std::vector<Cut> span_cuts(std::shared_ptr<Annulus const> const& annulus, page::Surface const& surface) {
+bool has_blades(ResolvedMotion const& motion) {
+  return std::any_of(motion.rules.begin(), motion.rules.end(), [](MotionRule const& rule) {
+    return std::holds_alternative<CircumferentialSlideRule>(rule.rule) || std::holds_alternative<FollowRule>(rule.rule);
+  });
+}
+
+}  // namespace
+
+Cut flat_cut(std::span<Vec3 const> nodes) {
+  std::array<double, 3> low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (Vec3 const& p : nodes)
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], component(p, d));
+      high[d] = std::max(high[d], component(p, d));
+    }
+  int thin = 2;
+  for (int d = 1; d >= 0; --d)
+    if (high[d] - low[d] < high[thin] - low[thin]) thin = d;
+  Cut cut = seen_along(thin);
+  cut.title = "The mesh";
+  return cut;
+}
+
+Cut index_cut(page::PictureMesh const& mesh, Coordinates const& at, int axis, int index) {
+  std::vector<Vec3> nodes;
+  for (page::Facet const& facet : mesh.index_plane(axis, index).facets)
+    for (Index32 const n : facet.node) nodes.push_back(at[n]);
+  char const letter = "ijk"[axis];
+  if (nodes.empty())
+    throw ConfigError(fmt::format("--{} {}: no block of '{}' has this plane of nodes; planes are counted from 1",
+                                  letter, index + 1, mesh.mesh().source));
+  Cut cut = flat_cut(nodes);
+  cut.title = fmt::format("{} = {}", letter, index + 1);
+  cut.index_plane = {axis, index};
+  return cut;
+}
+
+Cut plane_cut(int coordinate, double value) {
+  Cut cut = seen_along(coordinate);
+  cut.title = fmt::format("{} = {:.4g}", names[coordinate], value);
+  cut.levels = [coordinate, value](Coordinates const& nodes, std::span<double> level) {
+    double const* const x = (coordinate == 0 ? nodes.x : coordinate == 1 ? nodes.y : nodes.z).data();
+    for (std::size_t n = 0; n < level.size(); ++n) level[n] = x[n] - value;
+  };
+  return cut;
+}
+
+std::vector<Cut> span_cuts(Coordinates const& at, Axis const& axis, std::span<double const> shares,
+                           std::span<Vec3 const> about) {
+  auto const annulus = std::make_shared<Annulus const>(at, axis);
+  if (about.empty() || !annulus->is_axial()) return {};
   CylindricalFrame const& frame = annulus->frame();
   Vec3 const across =
       std::fabs(frame.direction().x) < 0.9 ? cross(frame.direction(), {1, 0, 0}) : cross(frame.direction(), {0, 1, 0});
   Vec3 const first = (1 / norm(across)) * across, second = cross(frame.direction(), first);
-  double radius = 0, x = 0, y = 0, n = 0;
-  for (std::size_t k = 0; k < surface.nodes.size(); ++k) {
-    if (surface.focus[k] == 0) continue;
-    Vec3 const d = surface.baseline[k] - frame.origin();
-    double const r = frame.meridional(surface.baseline[k]).radius;
+  double radius = 0, x = 0, y = 0;
+  for (Vec3 const& p : about) {
+    Vec3 const d = p - frame.origin();
+    double const r = frame.meridional(p).radius;
     radius += r;
     x += dot(d, first) / std::max(r, 1e-300);
     y += dot(d, second) / std::max(r, 1e-300);
-    ++n;
   }
-  if (n == 0) return {};
-  radius /= n;
+  radius /= double(about.size());
   constexpr double turn = 2 * 3.14159265358979323846;
   double const middle = std::atan2(y, x);
   std::vector<Cut> out;
-  for (double const share : {0.5, 0.9}) {
+  for (double const share : shares) {
     Cut cut;
-    cut.title = fmt::format("Span {:.0f} %, rolled out", 100 * share);
+    cut.title = fmt::format("Span {:.4g} %, rolled out", 100 * share);
     cut.labels = {"axial", "radius x angle"};
-    cut.levels = [annulus, share](Coordinates const& at, std::span<double> level) {
-      for (std::size_t n = 0; n < level.size(); ++n) level[n] = annulus->span(at[Index(n)]) - share;
+    cut.levels = [annulus, share](Coordinates const& nodes, std::span<double> level) {
+      for (std::size_t n = 0; n < level.size(); ++n) level[n] = annulus->span(nodes[Index(n)]) - share;
     };
     cut.flat = [annulus, first, second, middle, radius](Vec3 const& p) {
       CylindricalFrame const& f = annulus->frame();
@@ -144,7 +183,6 @@ std::vector<Cut> span_cuts(std::shared_ptr<Annulus const> const& annulus, page::
   return out;
 }
 
-/// Across each coordinate, through the middle of what moves, weighted by how far it does.
 std::vector<Cut> plane_cuts(page::Surface const& surface, std::vector<Vec3> const& displacement) {
   Vec3 middle;
   double weight = 0;
@@ -156,29 +194,40 @@ std::vector<Cut> plane_cuts(page::Surface const& surface, std::vector<Vec3> cons
     weight += u;
   }
   std::vector<Cut> out;
-  for (int d = 0; d < 3 && weight > 0; ++d) {
-    double const at = component(middle, d) / weight;
-    int const a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
-    Cut cut;
-    cut.title = fmt::format("{} = {:.4g}", names[d], at);
-    cut.labels = {names[a], names[b]};
-    cut.levels = [d, at](Coordinates const& nodes, std::span<double> level) {
-      double const* const x = (d == 0 ? nodes.x : d == 1 ? nodes.y : nodes.z).data();
-      for (std::size_t n = 0; n < level.size(); ++n) level[n] = x[n] - at;
-    };
-    cut.flat = [a, b](Vec3 const& p) { return page::Flat{component(p, a), component(p, b)}; };
-    out.push_back(std::move(cut));
-  }
+  for (int d = 0; d < 3 && weight > 0; ++d) out.push_back(plane_cut(d, component(middle, d) / weight));
   return out;
 }
 
-bool has_blades(ResolvedMotion const& motion) {
-  return std::any_of(motion.rules.begin(), motion.rules.end(), [](MotionRule const& rule) {
-    return std::holds_alternative<CircumferentialSlideRule>(rule.rule) || std::holds_alternative<FollowRule>(rule.rule);
-  });
+std::vector<Vec3> nodes_in_focus(page::Surface const& surface) {
+  std::vector<Vec3> out;
+  for (std::size_t n = 0; n < surface.nodes.size(); ++n)
+    if (surface.focus[n] != 0) out.push_back(surface.baseline[n]);
+  return out;
 }
 
-}  // namespace
+Vec3 upwards(std::optional<Axis> const& axis, page::Surface const& surface) {
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, sum;
+  double n = 0;
+  for (std::size_t k = 0; k < surface.nodes.size(); ++k) {
+    if (surface.focus[k] == 0) continue;
+    Vec3 const& p = surface.baseline[k];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    sum += p;
+    ++n;
+  }
+  if (n == 0) return {0, 0, 1};
+  if (axis) {
+    CylindricalFrame const frame(*axis);
+    Vec3 const d = (1 / n) * sum - frame.origin();
+    Vec3 const radial = d - dot(d, frame.direction()) * frame.direction();
+    if (norm(radial) > 1e-3 * norm(d)) return (1 / norm(radial)) * radial;
+  }
+  Vec3 const size = high - low;
+  if (size.y < 0.5 * size.z && size.y <= size.x) return {0, 1, 0};
+  if (size.x < 0.5 * size.z && size.x < size.y) return {1, 0, 0};
+  return {0, 0, 1};
+}
 
 bool is_of_machine(BoundaryMotion const& rules) {
   return has_blades(rules.motion()) || !rules.boundary().periodic_transforms().empty();
@@ -187,10 +236,13 @@ bool is_of_machine(BoundaryMotion const& rules) {
 std::vector<Cut> cuts_of(page::PictureMesh const& mesh, bool of_machine, std::optional<Axis> const& axis,
                          page::Surface const& surface, std::vector<Vec3> const& displacement) {
   Coordinates const& at = mesh.mesh().coordinates;
-  if (mesh.is_plane()) return {plane_mesh_cut(at)};
+  if (mesh.is_plane()) {
+    std::vector<Vec3> nodes;
+    for (Index n = 0; n < at.size(); ++n) nodes.push_back(at[n]);
+    return {flat_cut(nodes)};
+  }
   if (axis && of_machine)
-    if (auto const annulus = std::make_shared<Annulus const>(at, *axis); annulus->is_axial())
-      if (auto cuts = span_cuts(annulus, surface); !cuts.empty()) return cuts;
+    if (auto cuts = span_cuts(at, *axis, std::array{0.5, 0.9}, nodes_in_focus(surface)); !cuts.empty()) return cuts;
   return plane_cuts(surface, displacement);
 }
 

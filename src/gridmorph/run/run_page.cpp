@@ -1,9 +1,9 @@
-#include <gridmorph/geometry/cylindrical.hpp>
 #include <gridmorph/io/checksum.hpp>
 #include <gridmorph/io/read_file.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/page/html.hpp>
 #include <gridmorph/report/block_graph_text.hpp>
+#include <gridmorph/run/mesh_cuts.hpp>
 #include <gridmorph/run/run_page.hpp>
 #include <gridmorph/run/version.hpp>
 
@@ -74,31 +74,6 @@ std::vector<std::pair<std::string, std::string>> settings_of_program() {
   out.emplace_back("folder", std::filesystem::current_path(error).string());
   out.emplace_back("date", now());
   return out;
-}
-
-/// Away from the axis of a machine; otherwise what the body is thinnest along, and z where it is as thick all round.
-Vec3 upwards(std::optional<Axis> const& axis, page::Surface const& surface) {
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, sum;
-  double n = 0;
-  for (std::size_t k = 0; k < surface.nodes.size(); ++k) {
-    if (surface.focus[k] == 0) continue;
-    Vec3 const& p = surface.baseline[k];
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    sum += p;
-    ++n;
-  }
-  if (n == 0) return {0, 0, 1};
-  if (axis) {
-    CylindricalFrame const frame(*axis);
-    Vec3 const d = (1 / n) * sum - frame.origin();
-    Vec3 const radial = d - dot(d, frame.direction()) * frame.direction();
-    if (norm(radial) > 1e-3 * norm(d)) return (1 / norm(radial)) * radial;
-  }
-  Vec3 const size = high - low;
-  if (size.y < 0.5 * size.z && size.y <= size.x) return {0, 1, 0};
-  if (size.x < 0.5 * size.z && size.x < size.y) return {1, 0, 0};
-  return {0, 0, 1};
 }
 
 }  // namespace
@@ -258,7 +233,7 @@ namespace {
 /// A cut of both meshes.
 struct BothSections {
   std::array<page::Section, 2> section;
-  std::array<std::vector<float>, 2> value;
+  std::array<std::vector<page::Colour>, 2> colour;
   std::array<page::FlatBox, 2> walls;
 
   /// Of what moves, in both.
@@ -305,16 +280,17 @@ SectionFrame end_frame(std::size_t cut, BothSections const& both, bool first, st
 }
 }  // namespace
 
-/// Of cells, as the run kept them, measured where it did not.
-std::vector<float> RunPage::determinants_of(PageMeshes const& meshes, std::vector<Index> const& cells,
-                                            bool morphed) const {
+/// By determinants as the run kept them, measured where it did not.
+std::vector<page::Colour> RunPage::colours_of(PageMeshes const& meshes, std::vector<Index> const& cells,
+                                              bool morphed) const {
   auto const kept = meshes.kept ? meshes.kept(Measure::determinant_3x3x3) : Run::KeptMeasure();
   auto const* const values = morphed ? kept.after : kept.before;
   Coordinates const& at = morphed ? meshes.morphed : meshes.baseline;
-  std::vector<float> out;
+  std::vector<page::Colour> out;
   out.reserve(cells.size());
   for (Index const cell : cells)
-    out.push_back(float(values != nullptr ? (*values)[cell] : pictures_->measures(cell, at).determinant_3x3x3));
+    out.push_back(page::quality_colours().at(values != nullptr ? (*values)[cell]
+                                                               : pictures_->measures(cell, at).determinant_3x3x3));
   return out;
 }
 
@@ -326,7 +302,7 @@ void RunPage::make_sections(PageMeshes const& meshes) {
     std::size_t const c = n / 2, s = n % 2;
     Coordinates const& at = s == 0 ? meshes.baseline : meshes.morphed;
     both[c].section[s] = page::cut_mesh(*pictures_, boundary_, at, cuts[c], roles_.wall);
-    both[c].value[s] = determinants_of(meshes, both[c].section[s].cell, s == 1);
+    both[c].colour[s] = colours_of(meshes, both[c].section[s].cell, s == 1);
     both[c].walls[s] = page::moving_walls(both[c].section[s]);
   });
   // The cut with most of what moves comes first: of a wing that across its span.
@@ -358,7 +334,7 @@ void RunPage::make_sections(PageMeshes const& meshes) {
     page::Figure& figure = page_.sections[n / 2].figures[n % 2];
     BothSections const& b = both[f.cut];
     figure.body =
-        page::image(page::section_picture(b.section[n % 2], b.value[n % 2], f.window[n % 2], section_width, f.height),
+        page::image(page::section_picture(b.section[n % 2], b.colour[n % 2], f.window[n % 2], section_width, f.height),
                     f.title + ", " + figure.caption);
   });
 }

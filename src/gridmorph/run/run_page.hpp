@@ -60,8 +60,8 @@ class RunPage {
   [[nodiscard]] std::vector<Vec3> displacement_of_surface(Coordinates const& morphed) const;
   void make_surfaces(Coordinates const& morphed);
   void make_sections(PageMeshes const& meshes);
-  [[nodiscard]] std::vector<float> determinants_of(PageMeshes const& meshes, std::vector<Index> const& cells,
-                                                   bool morphed) const;
+  [[nodiscard]] std::vector<page::Colour> colours_of(PageMeshes const& meshes, std::vector<Index> const& cells,
+                                                     bool morphed) const;
   void make_steps();
 
   CaseFile const& case_file_;

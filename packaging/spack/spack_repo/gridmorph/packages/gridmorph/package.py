@@ -70,8 +70,6 @@ class Gridmorph(CMakePackage, CudaPackage, ROCmPackage, PythonExtension):
         depends_on("py-nanobind@2.4:", type="build")
         depends_on("py-numpy@1.22:", type=("build", "run"))
         depends_on("py-tomli-w@1.0:", type="run")
-        depends_on("py-h5py@3:~mpi", type="run")
-        depends_on("py-matplotlib@3.5:", type="run")
     depends_on("googletest@1.12:", type="test")
     depends_on("benchmark@1.7:", when="+benchmarks")
 
