@@ -422,7 +422,7 @@ TEST(UnstructuredMorph, ProfilesThatDifferInTheMiddleOnlyAreTwoSurfaces) {
 TEST(UnstructuredMorph, AroundARigidWallTheNearFieldIsTheSameRigidMotion) {
   Case const c(box_with_body(18));
   RigidTransform const r = rotation_about({9, 9, 9}, {0, 0, 1}, 0.3);
-  PlanOptions options = by_lattice();
+  PlanOptions options = test::by_lattice();
   options.elements.offset = 1.2;
   Morphed const m = c.morph(body_moves(RigidRule{r.rotation, r.translation}), options);
   // One element off the body, where other boundaries are five times as far as the wall.

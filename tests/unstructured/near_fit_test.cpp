@@ -108,7 +108,25 @@ Motion bent_blades() {
        rule_for({"inlet", "outlet"}, FixedRule{})});
 }
 
-TEST(NearFit, IsTakenByItselfWhereWallsAreFreeBodiesAndNothingIsPeriodic) {
+/// Bodies one behind the other, each between periodic sides.
+Mesh row_of_bodies() {
+  Mesh mesh = box_around({8, 8, 6}, [](Vec3 const& p) { return norm(p - Vec3{4, 4, 3}) < 2; });
+  std::erase_if(mesh.patches, [](Patch const& p) { return p.name == "i_min" || p.name == "i_max"; });
+  Connection sides;
+  sides.name = "sides";
+  sides.zone = sides.donor_zone = 0;
+  sides.periodic = periodic_translation({8, 0, 0});
+  for (Index32 n = 0; n < mesh.n_nodes(); ++n)
+    for (Index32 m = 0; m < mesh.n_nodes() && mesh.coordinates.x(n) == 0; ++m)
+      if (mesh.coordinates[m] == mesh.coordinates[n] + Vec3{8, 0, 0}) {
+        sides.nodes.push_back(n);
+        sides.donor_nodes.push_back(m);
+      }
+  mesh.connections.push_back(sides);
+  return mesh;
+}
+
+TEST(NearFit, IsTakenByItselfWhereWallsAreFreeBodies) {
   auto const fits = [](Case const& c, Motion const& motion, PlanOptions const& options = {}) {
     auto const prepared = prepare(c.mesh, c.topology, c.face_patches, motion, options);
     EXPECT_EQ(prepared.plan.fit.empty(), !prepared.report.by_least_squares);
@@ -125,7 +143,11 @@ TEST(NearFit, IsTakenByItselfWhereWallsAreFreeBodiesAndNothingIsPeriodic) {
                     })));
   auto const stands = [](Vec3 const& p) { return p.x > 3 && p.x < 5 && p.y > 3 && p.y < 5 && p.z < 3; };
   EXPECT_FALSE(fits(Case(box_around({8, 8, 6}, stands)), leaning()));
-  EXPECT_FALSE(fits(Case(plane_cascade(section_of_wheel(11), turned_sides(2 * std::numbers::pi / 11))), bent_blades()));
+  // Between periodic sides, unless other boundaries move too.
+  Case const row(row_of_bodies());
+  MotionRule const bends = rule_for({"body"}, rotation({4, 4, 3}, {0, 1, 0}, 0.1));
+  EXPECT_TRUE(fits(row, motion_of({bends, rule_for({"j_*", "k_*"}, FixedRule{})})));
+  EXPECT_FALSE(fits(row, motion_of({bends, rule_for({"j_*", "k_*"}, translation({0.1, 0, 0}))})));
 }
 
 /// The wall turns as a whole about an axis across the one that a body on a plane may turn about.
@@ -300,6 +322,32 @@ TEST(LeastSquaresField, HasImagesAsIfTheyWereWalls) {
               all.walls, frames_of_all);
   ASSERT_EQ(u.size(), v.size());
   for (std::size_t k = 0; k < u.size(); ++k) ASSERT_LT(distance(u[k], v[k]), 1e-12) << k;
+}
+
+/// Of boundaries that move beside walls no turns are known; those of the walls stand for them.
+TEST(LeastSquaresField, CarriesAMotionOfWallsAndOfWhatMovesBesideThemExactly) {
+  Bumps const b;
+  std::vector<Index32> nodes, beside;
+  for (std::size_t k = 0; k < b.walls.size(); ++k) (k % 4 == 3 ? beside : nodes).push_back(b.walls[k]);
+  std::size_t const n_walls = nodes.size();
+  nodes.insert(nodes.end(), beside.begin(), beside.end());
+  RigidTransform const r = rotation_about({1, 2, 3}, {0.6, 0, 0.8}, 1.1);
+  Mat3 gradient = r.rotation;
+  for (int i = 0; i < 3; ++i) gradient.m[i][i] -= 1;
+  std::vector<kernels::AffineMotion> frames;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    frames.push_back({r(b.x[nodes[k]]) - b.x[nodes[k]]});
+    if (k < n_walls) frames.back().gradient = gradient;
+  }
+  std::vector<double> area;
+  for (Index32 const n : nodes) area.push_back(b.area[n]);
+  auto const field =
+      make_least_squares_field(HostInstance(), b.x, {nodes, n_walls, area, {}}, MeanTurn::taken_off, b.readers);
+  auto const u = applied(field, b.x, nodes, frames);
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    Vec3 const at = b.x[b.readers[k].node];
+    ASSERT_LT(distance(u[k], r(at) - at), 1e-11 * (1 + norm(at))) << k;
+  }
 }
 
 TEST(LeastSquaresField, IsSmoothAndDoesNotDependOnTheAxes) {

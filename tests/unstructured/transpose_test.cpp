@@ -142,6 +142,15 @@ std::vector<Kind> kinds() {
       {"by_layers", box, {moves(), slips}, by_layers()},
       {"by_fit", box, {moves(), rule_for({"?_min", "?_max"}, FixedRule{})}, by_fit(with_layers(1))},
       {"by_fit_beside_what_slips", box, {moves(), slips}, by_fit(with_layers(1))},
+      {"by_fit_beside_what_moves",
+       half_annulus,
+       {rule_for({"j_min", "i_min"}, bends(0.03, {1, 0, 0})),
+        rule_for({"j_max", "i_max", "k_min", "k_max"}, FreeRule{})},
+       [] {
+         PlanOptions options = by_fit({});
+         options.elements.walls = {"j_min"};
+         return options;
+       }()},
       {"by_fit_of_two", two_bodies, {rule_for({"body"}, bends(0.05))}, by_fit({})},
       {"by_fit_as_it_grows",
        [] { return airfoil(48, 3, 0.02, 1.3, 4); },

@@ -198,7 +198,9 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
     double const m = distance_of[r] * distance_of[r];
     Vec3 const x = coordinates[readers[r].node] - out.origin;
     double const kept = turns == MeanTurn::taken_off ? 1 : kept_turn(distance_of[r] / size);
-    out.lean[r] = kept * solved(around, std::max(around.turns, 0.05) * m, x - around.x);
+    // As much as there are turns, so that motions in common are exact; a little where there are none.
+    constexpr double least_turns = 0.05;
+    out.lean[r] = kept * solved(around, std::max(around.turns, least_turns) * m, x - around.x);
     out.level[r] = 1 - dot(around.x, out.lean[r]);
     out.room[r] = m;
   });

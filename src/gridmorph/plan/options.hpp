@@ -17,8 +17,8 @@ struct Background;
 
 /// What carries the motion of the walls between the ends of their columns and the wrap.
 enum class NearFieldMethod {
-  /// Least squares where all moving walls are bodies that turn freely amid other boundaries and nothing is periodic,
-  /// else the lattice.
+  /// Least squares where all moving walls are bodies that turn freely amid other boundaries, between periodic sides
+  /// where nothing else moves; otherwise the lattice.
   automatic,
   lattice,  ///< its average on an even lattice, and from layer to layer what that misses at the columns
   layers,   ///< from layer to layer the motion itself: displacement and turn

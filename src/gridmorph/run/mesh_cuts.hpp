@@ -1,7 +1,7 @@
 // Where meshes are cut for pictures: those of report pages, and those of the command `view`.
 #pragma once
 
-#include <gridmorph/geometry/axis.hpp>
+#include <gridmorph/geometry/rigid_transform.hpp>
 #include <gridmorph/page/section.hpp>
 #include <gridmorph/page/surface_picture.hpp>
 

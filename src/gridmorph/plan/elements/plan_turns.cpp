@@ -81,13 +81,11 @@ bool UnstructuredPlanner::goes_by_least_squares() {
         "near field: by the lattice in place of least squares, since there is a background mesh of your own");
   if (of.background) return false;
   if (of.method != NearFieldMethod::automatic) return asked;
-  // Walls all around the mesh are nothing amid it. In blade rows whose sides follow the lattice keeps more.
-  Index const all = std::count_if(face_patches_.patch.begin(), face_patches_.patch.end(),
-                                  [](int patch) { return patch != BoundaryFacePatches::connection; });
+  // Walls around the mesh are no bodies in it. In rows of blades whose sides follow them the lattice keeps more.
   bool const is_periodic = std::any_of(mesh_.connections.begin(), mesh_.connections.end(),
                                        [](Connection const& c) { return c.periodic.has_value(); });
-  return !of.tube && all > std::ssize(driving_faces_) &&
-         ((all_walls_turn() && !is_periodic) || slots_beside_walls(Beside::anywhere).empty());
+  return !of.tube && all_walls_turn() && wall_bodies_.resting.faces.size() > 0 &&
+         (!is_periodic || slots_beside_walls(Beside::anywhere).empty());
 }
 
 void UnstructuredPlanner::add_turning_body(WallBody const& body) {
