@@ -145,7 +145,7 @@ struct VolumePass {
   struct IJK {
     int i, j, k;
   };
-  /// Of a tile.
+  /// The first node of a tile.
   template <class Int>
   KOKKOS_INLINE_FUNCTION static IJK first_node(VolumeBox const& box, Index tile) {
     Int const tiles_i = Int(tiles(box.n[0], Shape::volume_i)), tiles_j = Int(tiles(box.n[1], Shape::volume_j));

@@ -72,7 +72,7 @@ class Boundary {
   [[nodiscard]] BoundarySurface const& surface(int patch) const { return surfaces_[patch]; }
   /// Whether the patches are lines, the sides of a plane mesh.
   [[nodiscard]] bool is_plane() const { return plane_; }
-  /// Of blocks of a 2-D mesh.
+  /// The second plane of blocks of a 2-D mesh.
   [[nodiscard]] SecondPlane second_plane() const { return SecondPlane(mesh_); }
   /// The vector from the plane of a plane mesh to the second places of its nodes.
   [[nodiscard]] Vec3 const& across() const { return across_; }

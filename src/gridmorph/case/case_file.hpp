@@ -98,7 +98,7 @@ struct SequenceOptions {
   std::vector<double> times;     ///< of the steps, ascending; empty: spread evenly
   std::filesystem::path output;  ///< with "{step}" in its name: one file per step; without: one file with a series
 
-  /// Of step 0 ... steps - 1.
+  /// The periods passed at step 0 ... steps - 1.
   [[nodiscard]] double periods_at(int step) const {
     return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps) : times[step] / period;
   }

@@ -11,7 +11,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Of the patches that a rule names; what names none is told by those who resolve rules.
+/// The nodes of the patches that a rule names; what names none is told by those who resolve rules.
 std::vector<Vec3> nodes_of(Mesh const& mesh, SecondPlane const& second_plane, MotionRule const& rule) {
   std::vector<Vec3> out;
   for (std::string const& selector : rule.patches) {

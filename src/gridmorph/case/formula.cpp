@@ -22,7 +22,7 @@ namespace gridmorph {
 namespace {
 
 std::vector<std::string> const variable_names{"x", "y", "z", "r", "theta", "axial", "t", "step"};
-/// Of places on sections, for heights alone; constants of these names hide them.
+/// Variables of places on sections, for heights alone; constants of these names hide them.
 std::vector<std::string> const place_names{"span_fraction", "chord_fraction", "side"};
 
 /// Evaluated this many points at a time: long enough to hide the call, short enough to stay in cache.

@@ -150,7 +150,7 @@ std::string remedy_of(FilletResult const& result) {
       result.layers.old[0], result.layers.old[1]);
 }
 
-/// Of elements, most often too coarse ones: nodes beyond the fillet stay.
+/// What helps elements, most often too coarse ones: nodes beyond the fillet stay.
 std::string remedy_of(ElementFillet const& result) {
   return fmt::format(
       "; three cells along either wall at least have to be within the radius of the corner{}: give a larger radius, "

@@ -20,7 +20,7 @@ namespace gridmorph::cli {
 
 namespace {
 
-/// Of the mesh, 24 bytes per node and as much again for what else is in the file.
+/// Bytes of the mesh, 24 bytes per node and as much again for what else is in the file.
 constexpr std::uintmax_t bytes_per_thread = 1u << 19;
 
 bool any_set(std::initializer_list<char const*> names) {

@@ -261,7 +261,7 @@ class ShapeSmoothing {
     }
     return out;
   }
-  /// Of pieces that are not better than they were; whether any is.
+  /// Puts back pieces that are not better than they were; whether any is.
   bool put_back_worse(ShapeRegion const& region, RegionPieces const& pieces, std::vector<ShapeCount> const& had,
                       std::vector<Vec3> const& places) {
     std::vector<ShapeCount> const has = count(region, pieces);

@@ -316,7 +316,7 @@ class Search {
     out.n_left += Index(cells.size());
   }
 
-  /// Of all cells, where they are.
+  /// Where all cells are.
   [[nodiscard]] detail::CellPlaces places() const {
     return {[this](Index32 e) { return block_[e]; },
             [this](Index32 e) -> Orientation const& { return placed_[e].axes; },

@@ -64,7 +64,7 @@ UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh);
 inline UnstructuredTopology make_topology(Mesh const& mesh) { return make_topology(HostInstance(), mesh); }
 
 /// The boundary face with exactly these corner nodes, in any order (a node may be named twice); -1 where there is none.
-/// Of a surface inside the mesh either side; the other one is behind it.
+/// The boundary face with these nodes; of a surface inside the mesh either side, the other one is behind it.
 Index32 find_boundary_face(UnstructuredTopology const& topology, std::span<Index32 const> nodes);
 
 /// Which patch each boundary face belongs to.

@@ -38,7 +38,7 @@ FoundOrder find_order_quickly(HostInstance const& host, PreparedMorph const& pre
 Prediction predict_closely(HostInstance const& host, PreparedMorph const& prepared, std::span<Vec3 const> boundary,
                            Prediction const& some);
 
-/// Of elements `some` itself.
+/// A prediction of all cells where `some` looked at some of them; of elements `some` itself.
 Prediction predict_closely(HostInstance const& host, MorphPlan const& plan, std::span<Vec3 const> boundary,
                            Prediction const& some);
 

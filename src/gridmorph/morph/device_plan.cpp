@@ -115,7 +115,7 @@ kernels::VolumeKind kind_of(kernels::VolumeBox const& box, JoinedTables const& j
   return kind;
 }
 
-/// Of boxes that are sorted by kind; `items`: how many a box has.
+/// The work of boxes that are sorted by kind; `items`: how many a box has.
 template <class Items>
 kernels::ItemsByKind items_by_kind(JoinedTables const& joined, Items const& items) {
   kernels::ItemsByKind out;

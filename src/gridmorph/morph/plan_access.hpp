@@ -30,9 +30,10 @@ struct PlanAccess {
   /// Plans that were made in another way than by rules on a mesh as it stands.
   static MorphPlan of(PreparedMorph&& prepared);
   static MorphPlan of(PreparedUnstructured&& prepared);
-  /// Of blocks that are connected, with resolved rules and a plan in chains for them.
+  /// The plan of blocks that are connected, with resolved rules and a plan in chains for them.
   static MorphPlan of(Mesh mesh, Links links, BoundaryMotion rules, PlannedMorph planned, PlanOptions const& options);
-  /// Of elements with resolved rules, on the default host instance: prepare() of these (plan/unstructured_plan.hpp).
+  /// The plan of elements with resolved rules, on the default host instance: prepare() of these
+  /// (plan/unstructured_plan.hpp).
   static MorphPlan of(Mesh const& mesh, UnstructuredTopology const& topology, BoundaryFacePatches const& face_patches,
                       NodeGraph graph, BoundaryConditions conditions, PlanOptions const& options,
                       std::optional<std::vector<Vec3>> displacement);
@@ -46,7 +47,7 @@ struct PlanAccess {
   /// May be asked of blocks alone.
   static BlockPoints block_points(MorphPlan const& plan);
 
-  /// Of elements, whose plan must outlive what these return; nothing of blocks.
+  /// What a plan of elements has, which must outlive what these return; nothing of blocks.
   static std::optional<GuardedElements> guarded_elements(MorphPlan const& plan);
   static std::optional<PlannedElements> planned_elements(MorphPlan const& plan);
   /// put_back_given() (plan/given_slip.hpp), of elements alone.

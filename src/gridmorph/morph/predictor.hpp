@@ -40,7 +40,7 @@ class Predictor {
   /// first: order of chains, as in make_plan(). Nodes in names of chains are numbered among those sampled.
   [[nodiscard]] OrderTrial try_order(ChainOrder const& first, std::span<Vec3 const> boundary,
                                      ChainChoice choice = ChainChoice::rules);
-  /// Of the plan prepared, with its names.
+  /// The prediction of the plan prepared, with its names.
   [[nodiscard]] Prediction predict(std::span<Vec3 const> boundary);
 
  private:

@@ -89,9 +89,9 @@ class PictureMesh {
   Mesh const& mesh_;
 };
 
-/// Of blocks. handedness: zone_handedness().
+/// A mesh of blocks for pictures. handedness: zone_handedness().
 std::unique_ptr<PictureMesh> picture_mesh(Mesh const& mesh, std::span<int const> handedness);
-/// Of elements. signs: numbering_signs().
+/// A mesh of elements for pictures. signs: numbering_signs().
 std::unique_ptr<PictureMesh> picture_mesh(Mesh const& mesh, UnstructuredTopology const& topology,
                                           BoundaryFacePatches const& face_patches, std::span<signed char const> signs);
 

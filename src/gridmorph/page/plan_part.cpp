@@ -9,7 +9,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Of blocks: a line per stage.
+/// The plan of blocks: a line per stage.
 std::string stages_table(ReportPage const& page) {
   Table table(
       {{"stage"}, {"chains", true}, {"cells", true}, {"smallest determinant after it", true}, {"the first chain"}});
@@ -25,7 +25,7 @@ std::string stages_table(ReportPage const& page) {
   return table.html();
 }
 
-/// Of elements: how many are near, and what carries the rest.
+/// The plan of elements: how many are near, and what carries the rest.
 std::string regions_table(ReportPage const& page) {
   json const& plan = page.report["plan"];
   json const& e = plan["elements"];

@@ -20,7 +20,7 @@ using Flat = std::array<double, 2>;
 struct Cut {
   std::string title;                  ///< "span 50 %", "y = 3.5"
   std::array<std::string, 2> labels;  ///< of the two coordinates
-  /// Of all nodes, (n_nodes): zero where it cuts. Empty: the plane of a mesh.
+  /// Gives each node, (n_nodes), its level: zero where the mesh is cut. Empty: the plane of a mesh.
   std::function<void(Coordinates const& at, std::span<double> level)> levels;
   std::function<Flat(Vec3 const&)> flat;
   double period = 0;  ///< of the second coordinate; polygons wider than half of it are left out; 0: none

@@ -71,8 +71,8 @@ struct ElementTables {
   ElementViews<MemorySpace> elements;
   PolyhedronViews<MemorySpace> polyhedra;
   Vec3 plane_normal;
-  /// Of a mesh with polyhedra, which solvers take by faces, whatever types its elements have: those with J < 0 are what
-  /// their pyramids are.
+  /// Whether the mesh has polyhedra; solvers take it by faces then, whatever types its elements have: those with J < 0
+  /// are what their pyramids are.
   bool by_faces;
 
   KOKKOS_INLINE_FUNCTION ElementType type(Index e) const { return elements.type(e); }
@@ -91,7 +91,7 @@ struct ElementTables {
   KOKKOS_INLINE_FUNCTION bool is_curved(Index e) const {
     return kernels::is_second_order(type(e), elements.first(e + 1) - elements.first(e));
   }
-  /// Of an element of second order, with all nodes that such an element may have.
+  /// An element of second order with all nodes that such an element may have.
   template <class Points>
   KOKKOS_INLINE_FUNCTION kernels::CurvedElement curved(Points const& points, Index e) const {
     kernels::CurvedElement out{type(e), {}};
@@ -155,8 +155,9 @@ struct ElementTables {
                        is_sound_by_faces(points, e, sign, [](kernels::polyhedron::Pyramids const&) {});
     return sound ? kernels::JacobianSign::positive : out;
   }
-  /// Of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is scaled; of curved
-  /// elements what is smaller, that of their corners or J anywhere against the element with straight edges.
+  /// The scaled Jacobian: of straight elements kernels::scaled_jacobian(), of polyhedra their determinant, which is
+  /// scaled; of curved elements what is smaller, that of their corners or J anywhere against the element with straight
+  /// edges.
   template <class Points>
   KOKKOS_INLINE_FUNCTION double scaled_jacobian(Points const& points, Index e, double sign) const {
     ElementType const t = type(e);

@@ -72,7 +72,7 @@ struct FaceQuality {
   double non_orthogonality_deg = 0, skewness = 0;
 };
 
-/// Of both regions of one chunk.
+/// What the faces of one chunk come to, in both regions.
 struct FaceSums {
   PartialMeasure non_orthogonality_deg[2], skewness[2];
 
@@ -92,7 +92,7 @@ struct SideTables {
   Kokkos::View<SideLink const*, MemorySpace> links;
 };
 
-/// Of side `side` of element e.
+/// The face that side `side` of element e is.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION kernels::FaceGeometry face_of(ElementTables<MemorySpace> const& tables,
                                                      PackedPoints<MemorySpace> const& points, Index e, int side) {
@@ -125,8 +125,9 @@ Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres
   return centres;
 }
 
-/// Of element e; boundary faces have no line between centres, but a skewness. Behind a connection the neighbour lies as
-/// far from the face there as its image does from the one here, whatever became of the two sides: d = (f - x) + turn (y
+/// Adds the faces of element e; boundary faces have no line between centres, but a skewness. Behind a connection the
+/// neighbour lies as far from the face there as its image does from the one here, whatever became of the two sides: d =
+/// (f - x) + turn (y
 /// - f'), f' the centre of the face there.
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const& tables,

@@ -14,7 +14,7 @@ std::vector<int> handedness_of(HostInstance const& host, Mesh const& mesh) {
   return host.visit([&](auto const& exec) { return zone_handedness(exec, mesh, views(mesh.coordinates)); });
 }
 
-/// Of elements.
+/// The determinant of an element.
 template <class MemorySpace>
 struct ElementDeterminant {
   detail::ElementTables<MemorySpace> elements;

@@ -29,7 +29,7 @@ struct CertificateInput {
 /// the mesh.
 template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typename Exec::memory_space> const& input);
-/// Of a mesh with elements.
+/// Certifies a mesh with elements.
 template <BuiltFor Exec>
 Certificate certify(Exec const& exec, Mesh const& mesh, UnstructuredTopology const& topology,
                     CertificateInput<typename Exec::memory_space> const& input);

@@ -13,9 +13,9 @@ namespace gridmorph {
 
 namespace {
 
-/// Of the extent of a wall: nodes as near as that along it are one point of the profile.
+/// A share of the extent of a wall: nodes as near as that along it are one point of the profile.
 constexpr double same_station = 1e-9;
-/// Of its size: a wall whose nodes are farther from the profile than that is measured as it is, not as one of
+/// A share of its size: a wall whose nodes are farther from the profile than that is measured as it is, not as one of
 /// revolution.
 constexpr double largest_scatter = 1e-5;
 

@@ -12,7 +12,7 @@ namespace gridmorph {
 
 namespace {
 
-/// Of the distance from the origin: nodes as near as that to the wall are on it.
+/// A share of the distance from the origin: nodes as near as that to the wall are on it.
 constexpr double round_off = 1e-9;
 
 nlohmann::json json_of(Clearance const& c) {

@@ -33,7 +33,7 @@ class ClearanceWall {
   virtual ~ClearanceWall() = default;
 
   [[nodiscard]] virtual ClearanceMeasure measure() const = 0;
-  /// Of one point; signed.
+  /// The distance of one point from it; signed.
   [[nodiscard]] virtual double distance(Vec3 const& point) const = 0;
   /// Largest distance of the wall's nodes from what is measured to.
   [[nodiscard]] virtual double scatter() const = 0;

@@ -65,12 +65,12 @@ class CasePlan {
 
   /// Defaults taken, facts found on the way, up to now.
   [[nodiscard]] std::vector<std::string> notes() const;
-  /// Of the motion as the rules stand; of a sequence, at the step that comes out worst.
+  /// The prediction of the motion as the rules stand; of a sequence, at the step that comes out worst.
   [[nodiscard]] PlanPrediction predict();
   /// Displacements that the rules gave so far and slip surfaces undo, in part or for the most part. Those of which most
   /// is undone throw.
   [[nodiscard]] std::vector<Shortfall> trimmed() const;
-  /// Of planning.
+  /// The times of planning.
   [[nodiscard]] StepTimes times() const;
   /// For `gridmorph plan`, without notes.
   [[nodiscard]] std::string text(bool all) const;

@@ -25,7 +25,7 @@ class Clearances {
 
   [[nodiscard]] std::size_t size() const { return tips_.size(); }
   [[nodiscard]] std::vector<Index> const& nodes_of_tip(std::size_t t) const { return tips_[t].nodes; }
-  /// Of tip t in a morphed mesh.
+  /// The clearance of tip t in a morphed mesh.
   [[nodiscard]] TipClearance of(std::size_t t, Coordinates const& morphed, ByRule const& by_rule) const;
   /// Number of the rule of the case file that names all patches of a tip; -1 where there is none.
   [[nodiscard]] int rule_of_tip(std::size_t t) const { return tips_[t].rule; }
@@ -53,7 +53,7 @@ class Clearances {
   [[nodiscard]] Coordinates const& baseline() const { return boundary_.coordinates(); }
   [[nodiscard]] std::vector<Index> nodes_of(std::vector<int> const& patches) const;
   [[nodiscard]] Tip tip(ClearanceCase const& one, std::vector<int> const& rule_of_patch) const;
-  /// Of revolution; null where it is not, or where there is no axis.
+  /// The wall as one of revolution; null where it is not, or where there is no axis.
   [[nodiscard]] Wall revolution(Tip const& tip, Coordinates const& x) const;
   [[nodiscard]] static Wall surface(Tip const& tip, Coordinates const& x);
 

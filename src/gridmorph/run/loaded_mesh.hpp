@@ -79,7 +79,7 @@ class LoadedMesh {
   /// one; where they do not, and are all hexahedra, a note says why.
   LoadedMesh(std::filesystem::path const& path, std::optional<std::filesystem::path> const& side_file,
              std::vector<std::string> const& leave_out, bool find_blocks = false);
-  /// Of a mesh as it was read.
+  /// Takes a mesh as it was read.
   explicit LoadedMesh(Mesh as_read);
   /// Takes hexahedra as blocks, as with find_blocks.
   void take_blocks();

@@ -117,7 +117,7 @@ std::vector<Candidate> worst_of_all(Sample const& sample) {
   return out;
 }
 
-/// Of a verdict: those that the report names.
+/// The worst cells of a verdict: those that the report names.
 std::vector<Candidate> worst_of_report(QualityReport const& quality, page::PictureMesh const& mesh) {
   std::vector<Candidate> out;
   for (auto const& [region, field] :

@@ -81,7 +81,7 @@ class Annulus {
   [[nodiscard]] std::size_t bin(double a) const {
     return std::min(bins_ - 1, std::size_t((a - begin_) / (end_ - begin_) * double(bins_)));
   }
-  /// Of the nearest bin that has nodes.
+  /// The value of the nearest bin that has nodes.
   [[nodiscard]] double value(std::vector<double> const& of, std::size_t b) const {
     for (std::size_t d = 0; d < bins_; ++d) {
       if (b >= d && std::isfinite(of[b - d])) return of[b - d];

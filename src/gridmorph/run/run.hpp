@@ -31,7 +31,7 @@ bool wants_verdict(CaseFile const& case_file, Index cells);
 /// Adds to a step of that name, the last one where there is none.
 void add_time(StepTimes& times, std::string const& step, double seconds, bool every_node = true);
 
-/// Of cells, for report pages: what histograms show and worst cells are chosen by.
+/// Measures of cells for report pages: what histograms show and worst cells are chosen by.
 inline constexpr std::array page_measures{Measure::determinant_3x3x3, Measure::minimum_angle_deg,
                                           Measure::aspect_ratio};
 
@@ -109,10 +109,10 @@ class Run {
   /// What the motion would make of cells.
   PlanPrediction predict();
 
-  /// Of this quality against the baseline.
+  /// The shortfalls of this quality against the baseline.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of(QualityReport const& quality) const;
-  /// Of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip surfaces
-  /// undo. Throws MotionError where models lie elsewhere.
+  /// Those of the motion, whatever became of cells: models that lie far from their nodes, displacements that slip
+  /// surfaces undo. Throws MotionError where models lie elsewhere.
   [[nodiscard]] std::vector<Shortfall> shortfalls_of_motion() const;
   /// What came out, of this quality.
   [[nodiscard]] RunDocument document(QualityReport const& quality, Guarded const& guarded) const;

@@ -134,7 +134,7 @@ nlohmann::json run_json(RunDocument const& document);
 /// For people: notes and tables.
 std::string run_text(RunDocument const& document);
 
-/// Of the mesh; of a wheel those of all passages, which they name.
+/// The shortfalls of the mesh; of a wheel those of all passages, which they name.
 std::vector<Shortfall> shortfalls_of(RunDocument const& document);
 /// Whether any of them, or what falls short in any step, is a failure.
 bool misses_thresholds(RunDocument const& document);

@@ -236,7 +236,7 @@ struct BothSections {
   std::array<std::vector<page::Colour>, 2> colour;
   std::array<page::FlatBox, 2> walls;
 
-  /// Of what moves, in both.
+  /// The box around what moves, in both.
   [[nodiscard]] page::FlatBox box() const {
     page::FlatBox out;
     for (auto const& w : walls)

@@ -17,7 +17,7 @@
 
 namespace gridmorph::cli {
 
-/// Of the patches of a mesh, as rules move them.
+/// What the patches of a mesh are, as rules move them.
 struct PatchRoles {
   std::vector<signed char> wall;  ///< per patch: 1 a wall that a rule moves, 0 one that stands or slips, -1 none
 };

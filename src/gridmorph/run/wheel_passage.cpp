@@ -23,7 +23,7 @@ LinkedSector linked(LoadedMesh const& loaded, PassageLinks links, Axis const& ax
   return out;
 }
 
-/// Of elements, whose connections pair their nodes.
+/// A sector of elements, whose connections pair their nodes.
 LinkedSector linked_elements(LoadedMesh const& loaded, Axis const& axis) {
   Problems problems;
   for (auto const& problem : loaded.problems()) problems.add(problem);
@@ -31,7 +31,7 @@ LinkedSector linked_elements(LoadedMesh const& loaded, Axis const& axis) {
   return linked(loaded, passage_links(loaded.boundary()), axis);
 }
 
-/// Of blocks; to connect them completes their patches.
+/// A sector of blocks; to connect them completes their patches.
 LinkedSector linked_blocks(LoadedMesh& loaded, TopologyOptions const& options, Axis const& axis) {
   Mesh mesh = loaded.mesh();
   PassageLinks links = passage_links(mesh, connect_and_check(mesh, options), options);

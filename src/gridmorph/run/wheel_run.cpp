@@ -389,7 +389,7 @@ RunDocument WheelRun::document(WheelMade const& made) const {
   return out;
 }
 
-/// Of a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
+/// Certifies a passage in its place, closed to its neighbours. `zones`: those of the sector that it has.
 void WheelRun::certify_zones(std::map<int, int> const& zones, Certificate& wheel) {
   std::vector<int> own;
   for (auto const& [of_sector, of_wheel] : zones) own.push_back(of_sector);

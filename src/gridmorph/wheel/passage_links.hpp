@@ -32,10 +32,10 @@ struct PassageLinks {
   double mesh_size = 0;
 };
 
-/// Of a mesh of blocks, in the order of `links`. Cost: O(interface nodes).
+/// The links of a mesh of blocks, in the order of `links`. Cost: O(interface nodes).
 PassageLinks passage_links(Mesh const& mesh, Links const& links, TopologyOptions const& options);
-/// Of a mesh of elements, in the order of its connections, which pair nodes within 1e-6 of the mesh size. Cost: O(n log
-/// n) in the nodes of connections.
+/// Those of a mesh of elements, in the order of its connections, which pair nodes within 1e-6 of the mesh size. Cost:
+/// O(n log n) in the nodes of connections.
 PassageLinks passage_links(Boundary const& boundary);
 
 /// "periodic interface 'per_i' (zone 'Zone 1' i_min [1:1, 1:33, 1:9])", of elements "periodic connection 'per' (zone

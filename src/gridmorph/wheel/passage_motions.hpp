@@ -54,7 +54,7 @@ class PassageMotions {
   [[nodiscard]] bool alike(int passage, int other) const;
   /// The first passage whose displacements a passage has: itself where there is none before it.
   [[nodiscard]] int first_alike(int passage) const;
-  /// Of the row that makes most.
+  /// The passages of the row that has most.
   [[nodiscard]] int n_passages() const;
 
  private:

@@ -20,7 +20,7 @@ IndexRange common(IndexRange const& a, IndexRange const& b) {
 
 using Edges = std::vector<std::array<Index, 2>>;
 
-/// Of a patch of a block: those of the grid line in which it meets the link.
+/// The edges of a patch of a block: those of the grid line in which it meets the link.
 Edges edges_of_line(Zone const& zone, Patch const& patch, PassageLink const& link) {
   IndexRange const line = common(patch.range, link.range);
   std::vector<Index> nodes;
@@ -30,7 +30,8 @@ Edges edges_of_line(Zone const& zone, Patch const& patch, PassageLink const& lin
   return out;
 }
 
-/// Of a patch of elements: those of its faces whose ends the link has. Patches of a plane mesh meet it in single nodes.
+/// The edges of a patch of elements: those of its faces whose ends the link has. Patches of a plane mesh meet it in
+/// single nodes.
 Edges edges_of_faces(Boundary const& boundary, int patch, PassageLink const& link) {
   std::vector<Index> side;
   for (auto const& pair : link.pairs) side.push_back(pair[0]);

@@ -43,7 +43,7 @@ class RowPitch {
 
   [[nodiscard]] bool is_straight() const { return passages_ == 0; }
   [[nodiscard]] Vec3 const& shift() const { return shift_; }
-  /// Of the axis, or of the pitch.
+  /// The direction of the axis, or of the pitch.
   [[nodiscard]] Vec3 const& direction() const { return direction_; }
 
   /// Whether so many pitches lead back: 360 degrees, or none at all.

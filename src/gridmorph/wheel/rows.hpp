@@ -21,7 +21,7 @@ struct WheelRow {
 struct WheelRows {
   std::vector<WheelRow> rows;    ///< by their first zone
   std::vector<int> row_of_zone;  ///< per Mesh::zones
-  /// Of any of the periodic rows, which are all wheels or all straight: what
+  /// The pitch of any of the periodic rows, which are all wheels or all straight: what
   /// their motions are shared by. That of a turn by 360 degrees where there is
   /// none.
   [[nodiscard]] RowPitch any_pitch(Axis const& axis) const;

@@ -18,7 +18,7 @@ struct WheelMesh {
   Mesh mesh;  ///< no coordinates. Zones of elements share the nodes and the elements of their zone of the sector
   std::vector<WheelZone> zones;  ///< per Mesh::zones; passage after passage
 
-  /// Of all zones.
+  /// The nodes of all zones.
   [[nodiscard]] Index n_nodes() const;
 };
 

@@ -35,7 +35,7 @@ struct HexTurn {
   std::array<std::int8_t, 8> corner{};  ///< of the side's corners: theirs in that cell
 };
 
-/// Of every side with every other in all eight ways: 48 * side + 8 * other side + turn.
+/// How every side meets every other in all eight ways: 48 * side + 8 * other side + turn.
 extern std::array<HexTurn, 288> const side_turns;
 
 /// What lies across a side.

@@ -11,7 +11,8 @@
 
 namespace gridmorph::detail {
 
-/// Of displacement field `f`; with `Rate` f holds the rates of field `of`, of which everything has been done before.
+/// The turns of displacement field `f`; with `Rate` f holds the rates of field `of`, of which everything has been done
+/// before.
 template <class Exec, bool Rate>
 class BlockTurns {
  public:

@@ -91,7 +91,7 @@ struct BodyTurnTables {
     kernels::launch("gridmorph::transposed::bodies::sum", exec, 0, n_bodies,
                     kernels::BodySums{parts.data(), n_chunks, n_bodies, gradient.data()});
   }
-  /// Of what bodies give to the nodes of a list, or to all n of them.
+  /// Sums gradients of what bodies give to the nodes of a list, or to all n of them.
   void sum_nodes(Exec const& exec, Baseline const& x, List<Exec, Index32> const& nodes, Index n, double sign,
                  StageField<Exec> const& g) const {
     kernels::BodyPartsOfNodes<Memory> const kernel{field<Vec3>(x), nodes, n, sign, g.u.data(), parts.data()};
@@ -226,7 +226,7 @@ class AddTurns {
   explicit AddTurns(SharedBodyTurns<Exec> tables) : tables_(std::move(tables)) {}
 
   void enqueue(Exec const& exec, Baseline const& x, StageField<Exec> const& f) const { add<Vec3>(exec, x, f); }
-  /// Of what TakeTurns found.
+  /// The rate of what TakeTurns found.
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     add<Vec3>(exec, x, f);
     add<kernels::DualVec3>(exec, x, r);

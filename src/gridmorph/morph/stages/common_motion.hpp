@@ -67,7 +67,7 @@ struct CommonMotionTables {
     kernels::launch("gridmorph::common::take_rate", exec,
                     kernels::TakeCommonRate<Memory>{frame, position, of(f), of(r), given, rest, rest_rate.data()});
   }
-  /// Of the first n nodes.
+  /// Adds it to the first n nodes.
   void add(Exec const& exec, Baseline const& x, int f, Index n, Vec3* u) const {
     kernels::launch("gridmorph::common::add", exec, 0, n, kernels::AddCommonMotion{frame, x, of(f), u});
   }

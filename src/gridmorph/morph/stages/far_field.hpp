@@ -62,7 +62,7 @@ class FarField {
                          g.given.data());
   }
 
-  /// Of the background's nodes, by the last call.
+  /// The displacements of the background's nodes, by the last call.
   [[nodiscard]] ConstVectorView<typename Exec::memory_space> displacements() const { return u_.vectors(); }
 
  private:

@@ -114,7 +114,7 @@ class MorphParts {
     for (auto const& part : parts_) part->transpose(exec, g);
   }
 
-  /// Of a part, where it has one.
+  /// The far field of a part, where it has one.
   [[nodiscard]] FarField<Exec> const* far_field(std::size_t part) const {
     return part < parts_.size() ? parts_[part]->stages.far_field() : nullptr;
   }

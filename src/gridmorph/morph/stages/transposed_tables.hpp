@@ -24,11 +24,11 @@ struct TransposedEntries {
     target.push_back(to);
     weight.push_back(w);
   }
-  /// Of an operator, the weight that a row leaves its first item included.
+  /// Adds the entries of an operator, the weight that a row leaves its first item included.
   void add(InterpolationOperator const& rows) {
     add(rows, [](Index32) { return true; });
   }
-  /// Of the rows whose targets count.
+  /// Adds the rows whose targets count.
   template <class Counts>
   void add(InterpolationOperator const& rows, Counts const& counts) {
     for (std::size_t r = 0; r < rows.target.size(); ++r)

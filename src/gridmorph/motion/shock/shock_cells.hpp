@@ -21,7 +21,7 @@ class CellCorners {
   explicit CellCorners(Mesh const& mesh);
 
   [[nodiscard]] Index size() const { return n_; }
-  /// Of the cells in the file.
+  /// The dimension of the cells in the file.
   [[nodiscard]] int dimension() const { return mesh_.dimension; }
   /// Calls look(cell, corner nodes) for every cell in order.
   void each(std::function<void(Index, std::span<Index const>)> const& look) const;

@@ -81,7 +81,7 @@ struct RowRatios {
   KOKKOS_INLINE_FUNCTION void limits_known(int count) {
     for (int n = 0; n < count; ++n) limit[n] *= kernels::collapsed_fraction * kernels::collapsed_fraction;
   }
-  /// Of cells begin <= n < end: size[n] is continued by next[n].
+  /// Takes the ratios of cells begin <= n < end: size[n] is continued by next[n].
   KOKKOS_INLINE_FUNCTION void compare(double const* size, double const* next, int begin, int end) {
     for (int n = begin; n < end; ++n) take(n, size[n], next[n]);
   }
@@ -109,7 +109,7 @@ struct LineSizes {
                                           : cross(step(node, node + b + c), step(node + b, node + c));
     return dot(v, v);
   }
-  /// Of `count` nodes that follow one another along i.
+  /// The ratios at `count` nodes that follow one another along i.
   KOKKOS_INLINE_FUNCTION void row(Index first, Index const (&stride)[3], int a, int count, double* out) const {
     for (int n = 0; n < count; ++n) out[n] = at(first + n, stride, a);
   }

@@ -154,7 +154,7 @@ struct CellPlace {
   int zone;
   Index3 cell;
 };
-/// Of the cell of blocks with this number (first_cells()). Cost: O(zones).
+/// The place of the cell of blocks with this number (first_cells()). Cost: O(zones).
 CellPlace place_of_cell(Mesh const& mesh, Index cell);
 CellPlace place_of_element(Mesh const& mesh, Index element);
 
