@@ -85,7 +85,8 @@ bool allocate([[maybe_unused]] int fd, [[maybe_unused]] std::uintmax_t bytes) {
 
 }  // namespace
 
-/// A temporary file that is there, as a signal handler can read it. Never freed; used again once its name is taken out.
+/// A temporary file that is there, or about to be, as a signal handler can read it. Never freed; used again once its
+/// name is taken out.
 struct PendingName {
   std::string name;
   std::atomic<char const*> shown{nullptr};  ///< name, or nothing
@@ -199,13 +200,16 @@ OutputFile::OutputFile(std::string const& output) : output_(output) {
   constexpr int attempts = 1000;
   for (int n = 0; n < attempts; ++n) {
     temporary_ = (folder / (prefix + std::to_string(::getpid()) + "-" + std::to_string(made++) + ".part")).string();
+    // Shown before it is there: a signal in between would leave it behind.
+    pending_ = show(temporary_);
     Descriptor file(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() >= 0) {
-      pending_ = show(temporary_);
-      return;
-    }
-    if (errno != EEXIST) break;
+    if (file.get() >= 0) return;
+    int const failed = errno;
+    pending_->shown.store(nullptr);
+    errno = failed;
+    if (failed != EEXIST) break;
   }
+  pending_ = nullptr;
   throw MachineError(output + ": cannot be written: " + system_reason() +
                      "; check space and permissions of the folder");
 }

@@ -112,6 +112,61 @@ double spread(BoundaryGroups::Group const& group, Vec3 const& x, double d) {
   return 1 + 0.5 * order * ((order + 2) * along - all) / (d * d);
 }
 
+/// The groups that a node reads and their weights, of which the largest is 1.
+class GroupWeights {
+ public:
+  explicit GroupWeights(BoundaryGroups const& tree) : tree_(tree) {}
+
+  void find(Vec3 const& x, double from_walls) {
+    items_.clear();
+    weights_.clear();
+    open_.assign(1, {0, 1.0});
+    largest_ = 0;
+    while (!open_.empty()) {
+      auto const [g, part] = open_.back();
+      open_.pop_back();
+      look_at(g, part, x, from_walls);
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+      if (weights_[k] < least_weight * largest_) continue;
+      items_[kept] = items_[k];
+      weights_[kept++] = weights_[k] / largest_;
+    }
+    items_.resize(kept);
+    weights_.resize(kept);
+  }
+  [[nodiscard]] std::vector<Index32> const& items() const { return items_; }
+  [[nodiscard]] std::vector<double> const& weights() const { return weights_; }
+
+ private:
+  void look_at(Index32 g, double part, Vec3 const& x, double from_walls) {
+    auto const& group = tree_.groups[g];
+    double const d = std::max(distance(x, group.centre), from_walls);
+    // Lengths may be tiny: only ratios of weights count.
+    double const near = from_walls / d;
+    double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
+    double const wide = group.radius / d;
+    if (wide < 2 * opening && weight < least_weight * largest_) return;
+    double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
+    if (opened > 0) {
+      open_.emplace_back(group.part[1], part * opened);
+      open_.emplace_back(group.part[0], part * opened);
+    }
+    weight *= 1 - opened;
+    if (!(weight > least_weight * largest_)) return;
+    largest_ = std::max(largest_, weight);
+    items_.push_back(g);
+    weights_.push_back(weight);
+  }
+
+  BoundaryGroups const& tree_;
+  std::vector<std::pair<Index32, double>> open_;  ///< groups, and how much of them counts
+  std::vector<Index32> items_;
+  std::vector<double> weights_;
+  double largest_ = 0;
+};
+
 }  // namespace
 
 LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates const& coordinates,
@@ -136,49 +191,11 @@ LeastSquaresField make_least_squares_field(HostInstance const& host, Coordinates
         walls_alone ? own : std::min(own, std::max(tree.distance(coordinates[reader.node]), 1e-14 * tree.size()));
   });
 
-  struct Room {
-    std::vector<std::pair<Index32, double>> open;  ///< groups, and how much of them counts
-    std::vector<Index32> items;
-    std::vector<double> weights;
-  };
-  out.nodes =
-      make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
-                [&, room = Room()](Index r, InterpolationOperator& rows) mutable {
-                  Vec3 const x = coordinates[readers[r].node];
-                  double const from_walls = distance_of[r];
-                  room.items.clear();
-                  room.weights.clear();
-                  room.open.assign(1, {0, 1.0});
-                  double largest = 0;
-                  while (!room.open.empty()) {
-                    auto const [g, part] = room.open.back();
-                    room.open.pop_back();
-                    auto const& group = tree.groups[g];
-                    double const d = std::max(distance(x, group.centre), from_walls);
-                    // Lengths may be tiny: only ratios of weights count.
-                    double const near = from_walls / d;
-                    double weight = part * group.area * near * near * near * near * near * spread(group, x, d);
-                    double const wide = group.radius / d;
-                    if (wide < 2 * opening && weight < least_weight * largest) continue;
-                    double const opened = group.part[0] < 0 ? 0 : smoothstep((wide - opening) / opening);
-                    if (opened > 0) {
-                      room.open.emplace_back(group.part[1], part * opened);
-                      room.open.emplace_back(group.part[0], part * opened);
-                    }
-                    weight *= 1 - opened;
-                    if (!(weight > least_weight * largest)) continue;
-                    largest = std::max(largest, weight);
-                    room.items.push_back(g);
-                    room.weights.push_back(weight);
-                  }
-                  std::size_t kept = 0;
-                  for (std::size_t k = 0; k < room.items.size(); ++k) {
-                    if (room.weights[k] < least_weight * largest) continue;
-                    room.items[kept] = room.items[k];
-                    room.weights[kept++] = room.weights[k] / largest;
-                  }
-                  rows.add(readers[r].node, std::span(room.items).first(kept), std::span(room.weights).first(kept));
-                });
+  out.nodes = make_rows(host, "gridmorph::make_least_squares_field", std::ssize(readers),
+                        [&, groups = GroupWeights(tree)](Index r, InterpolationOperator& rows) mutable {
+                          groups.find(coordinates[readers[r].node], distance_of[r]);
+                          rows.add(readers[r].node, groups.items(), groups.weights());
+                        });
 
   // With the weights as they are rounded, so that common motions are exact.
   std::vector<PlaceMoments> moment(tree.groups.size());
