@@ -110,6 +110,12 @@ struct UnstructuredPlan {
   /// What the smooth part is spread from besides the driving nodes, after these: nodes of other boundaries among near
   /// elements that rules move, by their places in `known`.
   std::vector<Index32> beside_slots;
+  /// The driving nodes, then those of beside_slots.
+  [[nodiscard]] std::vector<Index32> smooth_sources() const {
+    std::vector<Index32> out = driving;
+    for (Index32 const s : beside_slots) out.push_back(known[s]);
+    return out;
+  }
   LayerRows near;
   std::vector<float> near_fade;  ///< per row of near, or of fit.nodes: share of what the smooth part misses
   std::vector<float> near_turn;  ///< per row of near, by layers: share of its sources' turns that the node makes

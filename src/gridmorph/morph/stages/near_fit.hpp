@@ -20,7 +20,7 @@ class NearFit {
 
   /// back: where the transpose is asked for.
   NearFit(Exec const& exec, UnstructuredPlan const& plan, std::vector<Vec3> const* back)
-      : sources_(uploaded_sources(exec, plan)),
+      : sources_(upload_now(exec, plan.smooth_sources(), "sources")),
         beside_(upload(exec, plan.beside_slots, name("beside"))),
         n_driving_(Index(plan.driving.size())),
         leaves_(upload(exec, plan.fit.leaves, name("leaves"))),
@@ -92,20 +92,15 @@ class NearFit {
  private:
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
-  /// Fences.
   static List<Exec, kernels::WallImage> upload_images(Exec const& exec, UnstructuredPlan const& plan) {
     std::vector<kernels::WallImage> images;
     for (RigidTransform const& image : plan.fit.images) images.push_back({image.rotation, image.translation});
-    auto const out = upload(exec, images, name("images"));
-    compat::fence(exec, "gridmorph::NearFit (host tables may go)");
-    return out;
+    return upload_now(exec, images, "images");
   }
-
-  /// Fences.
-  static List<Exec, Index32> uploaded_sources(Exec const& exec, UnstructuredPlan const& plan) {
-    std::vector<Index32> sources = plan.driving;
-    for (Index32 const s : plan.beside_slots) sources.push_back(plan.known[s]);
-    auto const out = upload(exec, sources, name("sources"));
+  /// A list that ends with the call. Fences.
+  template <class T>
+  static List<Exec, T> upload_now(Exec const& exec, std::vector<T> const& list, char const* what) {
+    auto const out = upload(exec, list, name(what));
     compat::fence(exec, "gridmorph::NearFit (host tables may go)");
     return out;
   }

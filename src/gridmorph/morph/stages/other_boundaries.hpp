@@ -1,12 +1,12 @@
 // Steps of an unstructured morph behind those of moving walls: boundaries that do not drive it get what they ask for,
 // and the difference spreads.
 //
-//   StartResidual   where nodes that slide or have images begin, in StageField::work
-//   PrescribeAtBoundary     rules and slip surfaces
-//   MeanOfImages    what is periodic moves as one
-//   JointNodes      on the surfaces of all of it
-//   GoAlong         columns on walls that slip, with the mean and the surfaces once more
-//   SpreadResidual  what the field so far misses of that, over all nodes
+//   StartResidual        where nodes that slide or have images begin, in StageField::work
+//   PrescribeAtBoundary  rules and slip surfaces
+//   MeanOfImages         what is periodic moves as one
+//   JointNodes           on the surfaces of all of it
+//   GoAlong              columns on walls that slip, with the mean and the surfaces once more
+//   SpreadResidual       what the field so far misses of that, over all nodes
 #pragma once
 
 #include <gridmorph/geometry/slip_surface.hpp>

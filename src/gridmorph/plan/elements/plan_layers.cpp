@@ -174,7 +174,7 @@ void UnstructuredPlanner::plan_fit() {
   bool const taken_off =
       all_walls_turn() && std::all_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(), turns_freely);
   plan.beside_slots = slots_beside_walls(Beside::anywhere);
-  std::vector<Index32> const sources = smooth_sources();
+  std::vector<Index32> const sources = plan.smooth_sources();
   plan.fit = make_least_squares_field(host_, mesh_.coordinates, {sources, plan.driving.size(), areas(sources), images},
                                       taken_off ? MeanTurn::taken_off : MeanTurn::left, readers);
 }
@@ -185,7 +185,7 @@ void UnstructuredPlanner::plan_smooth_walls() {
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n)
     if (near_[n]) box.include(mesh_.coordinates[n]);
   plan.beside_slots = slots_beside_walls(Beside::near);
-  std::vector<Index32> const sources = smooth_sources();
+  std::vector<Index32> const sources = plan.smooth_sources();
   plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
                                     box.high, most_lattice_nodes, fine_opening);
   double const reach = 4 * plan.walls.shape.spacing;
@@ -193,12 +193,6 @@ void UnstructuredPlanner::plan_smooth_walls() {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);
     plan.near_fade.push_back(float(1 - s * s * (3 - 2 * s)));
   }
-}
-
-std::vector<Index32> UnstructuredPlanner::smooth_sources() const {
-  std::vector<Index32> out = out_.plan.driving;
-  for (Index32 const s : out_.plan.beside_slots) out.push_back(out_.plan.known[s]);
-  return out;
 }
 
 std::vector<Index32> UnstructuredPlanner::slots_beside_walls(Beside which) const {

@@ -196,8 +196,6 @@ class UnstructuredPlanner {
   /// sides of a passage that follow its blade: were the near field to learn of them from the residual alone, it would
   /// be torn where they meet the wall.
   [[nodiscard]] std::vector<Index32> slots_beside_walls(Beside which) const;
-  /// What the smooth part is made of: the driving nodes, then those of UnstructuredPlan::beside_slots.
-  [[nodiscard]] std::vector<Index32> smooth_sources() const;
   /// Plans the walls' motion by least squares, for all nodes; what that misses at the ends of columns fades over three
   /// times their height.
   void plan_fit();
