@@ -161,6 +161,7 @@ struct Lines {
   static constexpr int n = 60;
   Coordinates x{2 * (n + 1)};
   std::vector<CsrGraph> edges{2};
+  std::vector<std::vector<SeenPiece>> walls{2};
 
   Lines() {
     for (int line = 0; line < 2; ++line)
@@ -168,6 +169,7 @@ struct Lines {
         Index32 const at = i + (n + 1) * line;
         x.set(at, {w * (2.0 * i / n - 1), double(line), 0});
         if (i < n) edges[line].add(std::array{at, at + 1});
+        if (i > 0) walls[line].push_back({0.5 * (x[at - 1] + x[at]), distance(x[at - 1], x[at])});
       }
   }
   /// C d / pi at height h over u.
@@ -180,16 +182,17 @@ TEST(Surroundings, AreAnglesOfLines) {
   Lines const lines;
   std::vector<FacetDistance> from;
   for (CsrGraph const& edges : lines.edges) from.emplace_back(lines.x, edges);
-  Surroundings const around({}, lines.x, lines.edges, from, {0, 0.5, 0}, 1);
+  Surroundings const around({}, {{0, 0.5, 0}}, lines.walls, from, 1);
   std::array<double, 2> seen{}, beside{};
   for (double const u : {0.0, 0.7, -1.9})
     for (double h = 0.05; h < 1; h += 0.05) {
-      around({u, h, 0}, seen);
+      seen = beside = {};
+      around.add({u, h, 0}, 1, seen);
       // Beside a line, closer than its sources are to one another, it is as blurred as they are.
       auto const blur = [](double height) { return height < 0.3 ? 0.2 : 0.1; };
       EXPECT_NEAR(seen[0], Lines::exact(u, h), blur(h)) << u << ' ' << h;
       EXPECT_NEAR(seen[1], Lines::exact(u, 1 - h), blur(1 - h)) << u << ' ' << h;
-      around({u + 1e-9, h + 1e-9, 0}, beside);
+      around.add({u + 1e-9, h + 1e-9, 0}, 1, beside);
       EXPECT_NEAR(seen[0], beside[0], 1e-7) << "no jumps";
     }
 }

@@ -41,10 +41,12 @@ void UnstructuredPlanner::find_turning_bodies() {
       wall_bodies_.resting.periodic.push_back(0);
     }
   };
+  // Sides that follow a blade between hub and case move with it; to fade towards them would shear what is between.
+  bool const sides_move = !slots_beside_walls(Beside::anywhere).empty();
   for (WallBody const& body : wall_bodies_.bodies) {
     bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
                                      [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });
-    if (rotates && !body.attached)
+    if (rotates && !body.attached && !(sides_move && body.ends_curved))
       turning.push_back(body);
     else
       rest(body);
@@ -106,7 +108,9 @@ void UnstructuredPlanner::add_turning_body(WallBody const& body) {
     all.wall.push_back(Index32(place));
     all.slot.push_back(out_.plan.driving_slots[place]);
     all.weight.push_back(area[k] / sum);
-    size = std::max(size, gridmorph::distance(mesh_.coordinates[body.nodes[k]], centre));
+    Vec3 const arm = mesh_.coordinates[body.nodes[k]] - centre;
+    // From wall to wall it is as large as its sections.
+    size = std::max(size, norm(body.is_spanned() ? arm - dot(arm, body.axis) * body.axis : arm));
   }
   all.first_chunk.push_back(Index(all.first.size()));
   body_sizes_.push_back(size);

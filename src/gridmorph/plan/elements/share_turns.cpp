@@ -1,6 +1,7 @@
 // What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings of plane meshes
 // by what it sees.
 #include <gridmorph/core/for_all.hpp>
+#include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace gridmorph::detail {
 
@@ -40,6 +42,57 @@ struct Boundaries {
   std::vector<double> const &column_height, &standing_height;
 };
 
+/// Where faces cut the plane dot(axis, x) = height.
+std::vector<SeenPiece> section(Coordinates const& x, CsrGraph const& faces, Vec3 const& axis, double height) {
+  std::vector<SeenPiece> out;
+  std::vector<Vec3> cuts;
+  for (Index f = 0; f < faces.size(); ++f) {
+    auto const face = faces[f];
+    cuts.clear();
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      Vec3 const a = x[face[k]], b = x[face[(k + 1) % face.size()]];
+      double const of_a = dot(axis, a) - height, of_b = dot(axis, b) - height;
+      if ((of_a < 0) != (of_b < 0)) cuts.push_back(a + (of_a / (of_a - of_b)) * (b - a));
+    }
+    for (std::size_t k = 1; k < cuts.size(); k += 2)
+      out.push_back({0.5 * (cuts[k - 1] + cuts[k]), gridmorph::distance(cuts[k - 1], cuts[k])});
+  }
+  return out;
+}
+
+/// Faces seen along an axis, as if all of them were as high as a body: a plane would miss some of them between walls
+/// that are cones.
+std::vector<SeenPiece> plan_view(Coordinates const& x, CsrGraph const& faces, Vec3 const& axis, double height) {
+  std::vector<SeenPiece> out;
+  for (Index f = 0; f < faces.size(); ++f) {
+    auto const face = faces[f];
+    Vec3 area, centre;
+    for (Index32 const n : face) centre += (1 / double(face.size())) * x[n];
+    for (std::size_t k = 2; k < face.size(); ++k)
+      area += 0.5 * cross(x[face[k - 1]] - x[face[0]], x[face[k]] - x[face[0]]);
+    out.push_back({centre, norm(area - dot(area, axis) * axis) / height});
+  }
+  return out;
+}
+
+/// What is in sight of a body: in its plane, or in sections along its span and linear between these.
+struct Sight {
+  Vec3 axis;
+  std::vector<double> height;  ///< of sections, ascending; none in plane meshes
+  std::vector<Surroundings> at;
+
+  void operator()(Vec3 const& p, std::span<double> seen) const {
+    std::fill(seen.begin(), seen.end(), 0.0);
+    if (height.empty()) return at.front().add(p, 1, seen);
+    double const h = std::clamp(dot(axis, p), height.front(), height.back());
+    auto const above = std::upper_bound(height.begin() + 1, height.end() - 1, h);
+    auto const k = std::size_t(above - height.begin());
+    double const t = (h - height[k - 1]) / (height[k] - height[k - 1]);
+    at[k - 1].add(p, 1 - t, seen);
+    at[k].add(p, t, seen);
+  }
+};
+
 class Places {
  public:
   explicit Places(Boundaries const& b);
@@ -61,6 +114,7 @@ class Places {
   void add_resting_faces();
   void add_bodies();
   void look_around(std::size_t body, double edges);
+  [[nodiscard]] std::vector<std::vector<SeenPiece>> walls_at(std::size_t body, double height) const;
   [[nodiscard]] bool turns_along(std::size_t body, Index32 surface) const;
   [[nodiscard]] bool turns_with(std::size_t body, std::size_t group) const {
     return group == first_body_ + body || (group < first_body_ && turns_along(body, groups_[group].surface));
@@ -79,7 +133,7 @@ class Places {
   std::size_t first_body_ = 0;
   std::vector<FacetDistance> from_;  ///< per group
   std::vector<double> in_sight_;     ///< per body: how much what is in sight has a say in narrow surroundings
-  std::vector<std::optional<Surroundings>> around_;
+  std::vector<std::optional<Sight>> around_;
 };
 
 Places::Places(Boundaries const& b) : b_(b) {
@@ -95,6 +149,8 @@ Places::Places(Boundaries const& b) : b_(b) {
 
 bool Places::turns_along(std::size_t body, Index32 surface) const {
   Vec3 const axis = b_.bodies[body].axis;
+  auto const& ends = b_.bodies[body].ends_on;
+  if (std::binary_search(ends.begin(), ends.end(), surface)) return true;
   return surface >= 0 && b_.mesh.dimension == 3 && b_.surfaces[surface].kind == SlipSurface::Kind::plane &&
          dot(axis, axis) > 0 && are_parallel(b_.surfaces[surface].direction, axis);
 }
@@ -144,20 +200,61 @@ void Places::add_bodies() {
 void Places::look_around(std::size_t body, double edges) {
   in_sight_.push_back(0);
   around_.emplace_back();
+  WallBody const& of = b_.bodies[body];
+  bool const in_space = b_.mesh.dimension == 3, has_images = b_.moves.size() > 1;
   // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
-  if (b_.mesh.dimension == 3) return;
-  bool const has_images = b_.moves.size() > 1;
-  in_sight_[body] = has_images ? 1 : compactness(0.5 * edges, b_.size[body]);
+  if (in_space && !of.is_spanned()) return;
+  double perimeter = in_space ? 0 : 0.5 * edges;
+  Moments extent;
+  if (in_space)
+    for (auto const& [centre, length] : walls_at(body, 0.5 * (of.span[0] + of.span[1]))[first_body_ + body]) {
+      Vec3 const arm = centre - b_.centre[body];
+      extent.add(length, arm - dot(arm, of.axis) * of.axis);
+      perimeter += length;
+    }
+  in_sight_[body] = has_images ? 1 : compactness(perimeter, b_.size[body]);
   if (!(in_sight_[body] > 0)) return;
   double gap = infinity;
   std::vector<int> start(from_.size(), 0);
-  for (Index32 const n : b_.bodies[body].nodes)
+  for (Index32 const n : of.nodes)
     for (std::size_t k = 0; k < from_.size(); ++k)
       if (!turns_with(body, k)) gap = std::min(gap, from_[k](b_.mesh.coordinates[n], start[k]));
   if (!has_images && !(narrowness(gap, b_.size[body]) > 0)) return;
-  std::vector<CsrGraph> walls;
-  for (FaceGroup const& g : groups_) walls.push_back(g.faces);
-  around_[body].emplace(b_.host, b_.mesh.coordinates, walls, from_, b_.centre[body], b_.size[body]);
+  Sight& sight = around_[body].emplace();
+  if (!in_space) {
+    sight.at.emplace_back(b_.host, SightPlane{b_.centre[body]}, walls_at(body, 0), from_, b_.size[body]);
+    return;
+  }
+  sight.axis = of.axis;
+  // Lattices lie along the section, so that they turn with the mesh.
+  Vec3 const along = PrincipalAxes(extent).direction[0], across = cross(of.axis, along);
+  constexpr int sections = 5;
+  for (int k = 0; k < sections; ++k) {
+    double const height = of.span[0] + (of.span[1] - of.span[0]) * (k + 0.5) / sections;
+    Vec3 const centre = b_.centre[body] + (height - dot(of.axis, b_.centre[body])) * of.axis;
+    sight.height.push_back(height);
+    sight.at.emplace_back(b_.host, SightPlane{centre, along, across}, walls_at(body, height), from_, b_.size[body]);
+  }
+}
+
+std::vector<std::vector<SeenPiece>> Places::walls_at(std::size_t body, double height) const {
+  std::vector<std::vector<SeenPiece>> out;
+  auto const& x = b_.mesh.coordinates;
+  WallBody const& of = b_.bodies[body];
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    auto& wall = out.emplace_back();
+    CsrGraph const& faces = groups_[k].faces;
+    if (b_.mesh.dimension == 2)
+      for (Index f = 0; f < faces.size(); ++f) {
+        Vec3 const a = x[faces[f][0]], b = x[faces[f][1]];
+        wall.push_back({0.5 * (a + b), gridmorph::distance(a, b)});
+      }
+    else if (k == first_body_ + body)
+      wall = section(x, faces, of.axis, height);
+    else if (!turns_with(body, k))
+      wall = plan_view(x, faces, of.axis, of.span[1] - of.span[0]);
+  }
+  return out;
 }
 
 Places::Room Places::room() const {

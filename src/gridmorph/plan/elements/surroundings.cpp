@@ -37,45 +37,48 @@ std::pair<std::size_t, double> interval(std::vector<double> const& at, double x)
 
 }  // namespace
 
-std::vector<Surroundings::Source> Surroundings::sources(Coordinates const& x, CsrGraph const& edges) const {
+std::vector<Surroundings::Source> Surroundings::sources(std::vector<SeenPiece> const& wall) const {
   constexpr double finest = 0.05, share_of_way = 0.15;    // of the body's size, of the distance from its centre
   std::map<std::array<std::int64_t, 3>, double> lengths;  // level, place: the same order however edges are numbered
-  for (Index f = 0; f < edges.size(); ++f) {
-    Vec3 const a = x[edges[f][0]], b = x[edges[f][1]], d = 0.5 * (a + b) - centre_;
-    double const steps = std::max(0.0, std::log2(share_of_way * std::hypot(d.x, d.y) / (finest * size_)));
+  for (auto const& [centre, length] : wall) {
+    Vec3 const d = centre - plane_.centre;
+    double const du = dot(d, plane_.u), dv = dot(d, plane_.v);
+    double const steps = std::max(0.0, std::log2(share_of_way * std::hypot(du, dv) / (finest * size_)));
     auto const level = std::int64_t(std::floor(steps));
     for (std::int64_t const upper : {0, 1}) {
       double const spacing = finest * size_ * std::ldexp(1.0, int(level + upper)), t = steps - double(level);
-      double const u = d.x / spacing, v = d.y / spacing;
+      double const u = du / spacing, v = dv / spacing;
       auto const i = std::int64_t(std::floor(u)), j = std::int64_t(std::floor(v));
       for (int corner = 0; corner < 4; ++corner) {
         int const p = corner & 1, q = corner >> 1;
         double const of_u = p == 1 ? u - double(i) : 1 - (u - double(i)),
                      of_v = q == 1 ? v - double(j) : 1 - (v - double(j));
         double const part = (upper == 1 ? t : 1 - t) * of_u * of_v;
-        if (part > 0) lengths[{level + upper, i + p, j + q}] += part * distance(a, b);
+        if (part > 0) lengths[{level + upper, i + p, j + q}] += part * length;
       }
     }
   }
   std::vector<Source> out;
   for (auto const& [key, length] : lengths) {
     double const spacing = finest * size_ * std::ldexp(1.0, int(key[0]));
-    out.push_back({centre_ + spacing * Vec3{double(key[1]), double(key[2]), 0}, length, spacing});
+    Vec3 const at = spacing * double(key[1]) * plane_.u + spacing * double(key[2]) * plane_.v;
+    out.push_back({plane_.centre + at, length, spacing});
   }
   return out;
 }
 
-Surroundings::Surroundings(HostInstance const& host, Coordinates const& coordinates, std::span<CsrGraph const> walls,
-                           std::span<FacetDistance const> from, Vec3 const& centre, double size)
-    : centre_(centre), size_(size), planes_(planes_around(size)), n_walls_(walls.size()) {
+Surroundings::Surroundings(HostInstance const& host, SightPlane const& plane,
+                           std::span<std::vector<SeenPiece> const> walls, std::span<FacetDistance const> from,
+                           double size)
+    : plane_(plane), size_(size), planes_(planes_around(size)), n_walls_(walls.size()) {
   std::vector<std::vector<Source>> all;
-  for (CsrGraph const& edges : walls) all.push_back(sources(coordinates, edges));
+  for (auto const& wall : walls) all.push_back(sources(wall));
   std::size_t const n = planes_.size();
   seen_.assign(n * n * n_walls_, 0);
   detail::for_all_parts(host, "gridmorph::surroundings", Index(n), [&](Index j) {
     std::vector<int> start(n_walls_, 0);
     for (std::size_t i = 0; i < n; ++i) {
-      Vec3 const p = centre_ + Vec3{planes_[i], planes_[j], 0};
+      Vec3 const p = plane_.centre + (planes_[i] * plane_.u + planes_[j] * plane_.v);
       for (std::size_t s = 0; s < n_walls_; ++s) {
         double closeness = 0, softened = 0;
         for (Source const& source : all[s]) {
@@ -92,15 +95,14 @@ Surroundings::Surroundings(HostInstance const& host, Coordinates const& coordina
   });
 }
 
-void Surroundings::operator()(Vec3 const& p, std::span<double> seen) const {
-  Vec3 const d = p - centre_;
+void Surroundings::add(Vec3 const& p, double factor, std::span<double> seen) const {
+  Vec3 const d = p - plane_.centre;
   std::size_t const n = planes_.size();
-  auto const [i, u] = interval(planes_, d.x);
-  auto const [j, v] = interval(planes_, d.y);
-  std::fill(seen.begin(), seen.end(), 0.0);
+  auto const [i, u] = interval(planes_, dot(d, plane_.u));
+  auto const [j, v] = interval(planes_, dot(d, plane_.v));
   for (std::size_t corner = 0; corner < 4; ++corner) {
     std::size_t const a = corner & 1, b = corner >> 1;
-    double const weight = (a == 1 ? u : 1 - u) * (b == 1 ? v : 1 - v);
+    double const weight = factor * (a == 1 ? u : 1 - u) * (b == 1 ? v : 1 - v);
     double const* const at = seen_.data() + ((i + a) + n * (j + b)) * n_walls_;
     for (std::size_t s = 0; s < n_walls_; ++s) seen[s] += weight * at[s];
   }

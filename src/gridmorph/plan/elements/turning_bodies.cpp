@@ -1,8 +1,10 @@
 #include <gridmorph/core/disjoint_sets.hpp>
+#include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/mesh/unstructured_topology.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace gridmorph {
 namespace {
@@ -49,12 +51,78 @@ struct OtherFace {
   }
 };
 
-void limit_to(Vec3 const& axis, WallBody& body) {
-  if (!(dot(body.axis, body.axis) > 0))
-    body.axis = axis;
-  else if (!are_parallel(axis, body.axis))
-    body.attached = true;
-}
+/// What one body ends on: the normals of slip surfaces at it.
+class EndsOfBody {
+ public:
+  void add(Index32 node, std::span<Vec3 const> corners, SlipSurface const& surface, Index32 number) {
+    nodes_.push_back(node);
+    if (surface.kind == SlipSurface::Kind::plane) {
+      if (!(norm(plane_) > 0)) plane_ = surface.direction;
+      in_one_plane_ = in_one_plane_ && are_parallel(plane_, surface.direction);
+    } else {
+      curved_ = true;
+    }
+    // A node that keeps its axial position alone may leave the boundary that it is on.
+    is_surface_ = is_surface_ && surface.kind != SlipSurface::Kind::axial;
+    Vec3 normal;
+    for (std::size_t k = 2; k < corners.size(); ++k)
+      normal += cross(corners[k - 1] - corners[0], corners[k] - corners[0]);
+    if (double const area = norm(normal); area > 0) normals_.add(1 / area, normal);
+    auto const at = std::lower_bound(surfaces_.begin(), surfaces_.end(), number);
+    if (at == surfaces_.end() || *at != number) surfaces_.insert(at, number);
+  }
+
+  /// Sets what the body may do. x: of all nodes.
+  void limit(Coordinates const& x, WallBody& body) const {
+    body.ends_on = surfaces_;
+    body.ends_curved = curved_;
+    if (surfaces_.empty()) return;
+    Vec3 axis = plane_;
+    bool slides = is_surface_ && in_one_plane_;
+    if (curved_) {
+      // Around a blade walls of a passage point one way but for some twenty degrees.
+      constexpr double alike = 0.9;
+      PrincipalAxes const axes(normals_);
+      axis = axes.direction[0];
+      slides = is_surface_ && axes.moment[0] >= alike * (axes.moment[0] + axes.moment[1] + axes.moment[2]);
+    }
+    if (!slides || (norm(body.axis) > 0 && !are_parallel(axis, body.axis)))
+      body.attached = true;
+    else
+      body.axis = axis;
+    if (!body.attached) find_span(x, body);
+  }
+
+ private:
+  void find_span(Coordinates const& x, WallBody& body) const {
+    auto const at = [&](Index32 n) { return dot(body.axis, x[n]); };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double low = infinity, high = -infinity;
+    for (Index32 const n : body.nodes) {
+      low = std::min(low, at(n));
+      high = std::max(high, at(n));
+    }
+    // Of the nodes at either end, the innermost; bodies that end in the domain are whole nowhere.
+    double lowest = infinity, highest = -infinity, inner_low = low, inner_high = high;
+    for (Index32 const n : nodes_) {
+      double const h = at(n);
+      lowest = std::min(lowest, h);
+      highest = std::max(highest, h);
+      if (h < 0.5 * (low + high))
+        inner_low = std::max(inner_low, h);
+      else
+        inner_high = std::min(inner_high, h);
+    }
+    if (lowest > low || highest < high) return;
+    body.span[0] = inner_low;
+    body.span[1] = inner_high;
+  }
+
+  Moments normals_;
+  Vec3 plane_;
+  bool in_one_plane_ = true, curved_ = false, is_surface_ = true;
+  std::vector<Index32> surfaces_, nodes_;
+};
 
 }  // namespace
 
@@ -98,6 +166,8 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
   std::vector<std::uint8_t> paired = periodic_nodes(mesh);
   for (std::size_t n = 0; n < paired.size(); ++n)
     if (paired[n] != 0) paired[graph.representative[n]] = 1;
+  std::vector<EndsOfBody> ends(out.bodies.size());
+  std::vector<Vec3> corners;
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     if (of_wall[f] != 0) continue;
     nodes_of(f);
@@ -117,15 +187,17 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
           std::any_of(nodes.begin(), nodes.end(), [&](Index32 n) { return kinds.kind[n] == NodeKinds::periodic; });
       out.resting.periodic.push_back(periodic ? 1 : 0);
     }
+    corners.clear();
+    for (Index32 const n : topology.boundary.nodes[f]) corners.push_back(mesh.coordinates[n]);
     for (Index32 const n : nodes) {
       if (body_of[n] < 0) continue;
-      WallBody& body = out.bodies[body_of[n]];
-      if (slips && surfaces[face.surface].kind == SlipSurface::Kind::plane)
-        limit_to(surfaces[face.surface].direction, body);
+      if (slips)
+        ends[body_of[n]].add(n, corners, surfaces[face.surface], face.surface);
       else
-        body.attached = true;
+        out.bodies[body_of[n]].attached = true;
     }
   }
+  for (std::size_t b = 0; b < ends.size(); ++b) ends[b].limit(mesh.coordinates, out.bodies[b]);
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Which moving walls turn as a whole: bodies that stand free, or on planes that they slide along;
+// Which moving walls turn as a whole: bodies that stand free, or on slip surfaces that they slide along;
 // and how much of a body's turn and shift a place makes: all of it at the body, none at other boundaries; turns like
 // the logarithm of the distance between, shifts like the distance.
 #pragma once
@@ -16,11 +16,17 @@ namespace gridmorph {
 
 /// Walls that touch.
 struct WallBody {
-  std::vector<Index32> faces;  ///< in UnstructuredTopology::boundary
-  std::vector<Index32> nodes;  ///< representatives, ascending
-  Vec3 axis;                   ///< unit: the only one about which it may turn; zero: any
-  /// Whether it ends on boundaries that could not turn with it: given ones, periodic ones, slip surfaces that are no
-  /// planes or planes in two directions, free ones.
+  std::vector<Index32> faces;    ///< in UnstructuredTopology::boundary
+  std::vector<Index32> nodes;    ///< representatives, ascending
+  Vec3 axis;                     ///< unit: the only one about which it may turn; zero: any
+  std::vector<Index32> ends_on;  ///< slip surfaces, ascending
+  bool ends_curved = false;      ///< not all of them are planes
+  /// Where it is whole along its axis, as dot(axis, x), if it ends on slip surfaces at both ends; else the first is not
+  /// below the second.
+  double span[2] = {0, 0};
+  [[nodiscard]] bool is_spanned() const { return span[0] < span[1]; }
+  /// Whether it ends on boundaries that could not turn with it: given ones, periodic ones, slip surfaces whose normals
+  /// point in several directions around it, free ones.
   bool attached = false;
 };
 
@@ -109,7 +115,19 @@ double compactness(double perimeter, double size);
 void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, std::span<double const> moved,
                   double from_others, std::span<double> shares);
 
-/// The closeness of some walls, each a list of edges in a plane z = constant,
+/// A plane that places are seen in.
+struct SightPlane {
+  Vec3 centre;
+  Vec3 u{1, 0, 0}, v{0, 1, 0};  ///< unit, at right angles
+};
+
+/// A short piece of a wall in such a plane.
+struct SeenPiece {
+  Vec3 centre;
+  double length;
+};
+
+/// The closeness of some walls, each a list of pieces in a plane,
 ///
 ///   C(x) = integral along the wall of ds / |y - x|^2
 ///
@@ -126,12 +144,12 @@ class Surroundings {
   /// How far the lattice reaches beyond the centre of the body, in sizes of it.
   static constexpr double reach = 6;
 
-  /// centre, size: of the body. from: distances from the walls.
-  Surroundings(HostInstance const& host, Coordinates const& coordinates, std::span<CsrGraph const> walls,
-               std::span<FacetDistance const> from, Vec3 const& centre, double size);
+  /// plane, size: at the centre of the body, its size there. from: distances from the walls.
+  Surroundings(HostInstance const& host, SightPlane const& plane, std::span<std::vector<SeenPiece> const> walls,
+               std::span<FacetDistance const> from, double size);
 
-  /// Evaluates C d / pi of each wall at a place; beyond the lattice that of its nearest place.
-  void operator()(Vec3 const& p, std::span<double> seen) const;
+  /// Adds C d / pi of each wall at a place, times a factor; beyond the lattice that of its nearest place.
+  void add(Vec3 const& p, double factor, std::span<double> seen) const;
 
  private:
   struct Source {
@@ -139,9 +157,9 @@ class Surroundings {
     double length, softening;  ///< where r is below it, edges between sources would be missed
   };
 
-  [[nodiscard]] std::vector<Source> sources(Coordinates const& coordinates, CsrGraph const& edges) const;
+  [[nodiscard]] std::vector<Source> sources(std::vector<SeenPiece> const& wall) const;
 
-  Vec3 centre_;
+  SightPlane plane_;
   double size_;
   std::vector<double> planes_;  ///< of both axes, from the centre
   std::vector<double> seen_;    ///< walls fastest, then x, y
