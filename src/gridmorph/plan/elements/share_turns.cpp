@@ -22,6 +22,7 @@ struct FaceGroup {
   CsrGraph faces;
   double layer = 0;    ///< what stays with them: columns, and the first cells of bodies without any
   double columns = 0;  ///< columns alone
+  bool counts = true;  ///< unless all bodies turn along it
 };
 
 // What a rule displaces; what no body turns along.
@@ -194,6 +195,10 @@ void Places::add_bodies() {
     g.layer = g.columns > 0 ? g.columns : edges.back() / double(n_edges);
     from_.emplace_back(b_.mesh.coordinates, g.faces);
   }
+  for (std::size_t k = given + 1; k < first_body_; ++k) {
+    groups_[k].counts = false;
+    for (std::size_t b = 0; b < b_.bodies.size(); ++b) groups_[k].counts = groups_[k].counts || !turns_with(b, k);
+  }
   for (std::size_t b = 0; b < b_.bodies.size(); ++b) look_around(b, edges[b]);
 }
 
@@ -277,6 +282,7 @@ void Places::shares(Vec3 const& x, Room& room) const {
   for (std::size_t m = 0; m < back_.size(); ++m) {
     Vec3 const y = m == 0 ? x : back_[m](x);
     for (std::size_t k = 0; k < groups_.size(); ++k) {
+      if (!groups_[k].counts) continue;
       double const d = distance(room, m, k) = from_[k](y, room.start[m * groups_.size() + k]);
       room.nearest[k] = std::min(room.nearest[k], d);
     }
