@@ -2,14 +2,17 @@
 // by what it sees.
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
+#include <gridmorph/kernels/facet_tree.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::detail {
@@ -24,6 +27,9 @@ struct FaceGroup {
   double columns = 0;  ///< columns alone
   bool counts = true;  ///< unless all bodies turn along it
 };
+
+// How much farther than the nearest one an image has no share, in pitches.
+constexpr double pitches_in_sight = 1.5;
 
 // What a rule displaces; what no body turns along.
 constexpr std::size_t given = 0, crosswise = 1;
@@ -106,6 +112,8 @@ class Places {
     std::vector<double> turn;      ///< per image: share
     std::vector<double> shift;     ///< per body: share
     std::vector<double> seen, closeness, parts, beyond;
+    std::vector<std::pair<double, std::size_t>> least;  ///< least distances of images, and the images
+    std::vector<std::uint8_t> out_of_sight;             ///< per image
   };
   [[nodiscard]] Room room() const;
   /// Sets room.turn and room.shift to the shares at a place.
@@ -126,12 +134,22 @@ class Places {
   [[nodiscard]] TurnDistances distances(Room& room, std::size_t image) const;
   void turns_in_sight(Vec3 const& x, std::size_t body, Room& room) const;
   void shifts(Room& room) const;
+  void measure(Vec3 const& x, Room& room) const;
+  /// Measures the distance of the place that a move takes to x.
+  void measure(Vec3 const& x, std::size_t move, std::size_t group, Room& room) const;
+  /// Measures those from the images of a single body, but for images that have no share.
+  void measure_row(Vec3 const& x, Room& room) const;
+  /// The distance from one image of a body to the next.
+  [[nodiscard]] double pitch(std::size_t body) const {
+    return gridmorph::distance(b_.moves[1](b_.centre[body]), b_.centre[body]);
+  }
 
   Boundaries b_;
   std::vector<RigidTransform> back_;  ///< per move
   bool images_shift_alike_ = true;    ///< no move turns
   std::vector<FaceGroup> groups_;
   std::size_t first_body_ = 0;
+  kernels::FacetBox body_box_;       ///< of a single body
   std::vector<FacetDistance> from_;  ///< per group
   std::vector<double> in_sight_;     ///< per body: how much what is in sight has a say in narrow surroundings
   std::vector<std::optional<Sight>> around_;
@@ -191,6 +209,9 @@ void Places::add_bodies() {
             gridmorph::distance(b_.mesh.coordinates[face[k]], b_.mesh.coordinates[face[(k + 1) % face.size()]]);
     }
     for (Index32 const n : body.nodes) g.columns = std::max(g.columns, b_.column_height[n]);
+    Box box;
+    for (Index32 const n : body.nodes) box.include(b_.mesh.coordinates[n]);
+    body_box_ = {box.low, box.high};
     // Without columns the first cells turn with the wall, about as high as its faces are long.
     g.layer = g.columns > 0 ? g.columns : edges.back() / double(n_edges);
     from_.emplace_back(b_.mesh.coordinates, g.faces);
@@ -274,20 +295,59 @@ Places::Room Places::room() const {
   out.closeness.resize(n);
   out.parts.resize(b_.moves.size());
   out.beyond.resize(b_.bodies.size());
+  out.least.resize(b_.moves.size());
+  out.out_of_sight.assign(b_.moves.size(), 0);
   return out;
 }
 
-void Places::shares(Vec3 const& x, Room& room) const {
+void Places::measure(Vec3 const& x, std::size_t move, std::size_t group, Room& room) const {
+  Vec3 const y = move == 0 ? x : back_[move](x);
+  double const d = distance(room, move, group) = from_[group](y, room.start[move * groups_.size() + group]);
+  room.nearest[group] = std::min(room.nearest[group], d);
+}
+
+void Places::measure(Vec3 const& x, Room& room) const {
   std::fill(room.nearest.begin(), room.nearest.end(), infinity);
-  for (std::size_t m = 0; m < back_.size(); ++m) {
-    Vec3 const y = m == 0 ? x : back_[m](x);
-    for (std::size_t k = 0; k < groups_.size(); ++k) {
-      if (!groups_[k].counts) continue;
-      double const d = distance(room, m, k) = from_[k](y, room.start[m * groups_.size() + k]);
-      room.nearest[k] = std::min(room.nearest[k], d);
-    }
+  bool const is_row = b_.moves.size() > 1 && b_.bodies.size() == 1 && around_[0] && in_sight_[0] == 1;
+  for (std::size_t m = 0; m < b_.moves.size(); ++m)
+    for (std::size_t k = 0; k < groups_.size(); ++k)
+      if (groups_[k].counts && !(is_row && k == first_body_)) measure(x, m, k, room);
+  if (is_row) measure_row(x, room);
+}
+
+void Places::measure_row(Vec3 const& x, Room& room) const {
+  // Far images cost most: blades that are seen from afar at an angle have many boxes that are about as near.
+  for (std::size_t m = 0; m < b_.moves.size(); ++m) {
+    room.least[m] = {m == 0 ? 0 : std::sqrt(body_box_.distance2(back_[m](x))), m};
+    room.out_of_sight[m] = 0;
+    distance(room, m, first_body_) = infinity;
   }
-  for (std::size_t e = 0; e < room.turn.size(); ++e) room.turn[e] = turn_share(distances(room, e));
+  std::sort(room.least.begin(), room.least.end());
+  double& nearest = room.nearest[first_body_];
+  double second = infinity;
+  for (auto const& [least, m] : room.least) {
+    if (least > std::max(second, nearest + pitches_in_sight * pitch(0))) {
+      room.out_of_sight[m] = 1;
+      continue;
+    }
+    double const last = nearest;
+    measure(x, m, first_body_, room);
+    second = std::min(second, std::max(last, distance(room, m, first_body_)));
+  }
+  double others = second;
+  for (std::size_t k = 0; k < first_body_; ++k)
+    if (!turns_with(0, k)) others = std::min(others, room.nearest[k]);
+  if (narrowness(nearest + others, b_.size[0]) == 1) return;
+  for (std::size_t m = 0; m < b_.moves.size(); ++m) {
+    if (room.out_of_sight[m] != 0) measure(x, m, first_body_, room);
+    room.out_of_sight[m] = 0;
+  }
+}
+
+void Places::shares(Vec3 const& x, Room& room) const {
+  measure(x, room);
+  for (std::size_t e = 0; e < room.turn.size(); ++e)
+    room.turn[e] = room.out_of_sight[e / b_.bodies.size()] != 0 ? 0 : turn_share(distances(room, e));
   share_between(room.turn);
   for (std::size_t b = 0; b < b_.bodies.size(); ++b)
     if (around_[b]) turns_in_sight(x, b, room);
@@ -321,8 +381,7 @@ void Places::turns_in_sight(Vec3 const& x, std::size_t body, Room& room) const {
   // Images much farther than the nearest one do not count: they are listed up to some passage only.
   auto const counts = [&](std::size_t move, std::size_t group) {
     if (b_.moves.size() == 1 || group < first_body_) return 1.0;
-    double const pitch = gridmorph::distance(b_.moves[1](b_.centre[body]), b_.centre[body]);
-    double const t = (distance(room, move, group) - room.nearest[group]) / (1.5 * pitch);
+    double const t = (distance(room, move, group) - room.nearest[group]) / (pitches_in_sight * pitch(body));
     return t < 1 ? (1 - t * t) * (1 - t * t) : 0.0;
   };
   double beside = 0, all = 0;
