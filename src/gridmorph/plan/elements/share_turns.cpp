@@ -232,12 +232,14 @@ void Places::look_around(std::size_t body, double edges) {
   if (in_space && !of.is_spanned()) return;
   double perimeter = in_space ? 0 : 0.5 * edges;
   Moments extent;
-  if (in_space)
-    for (auto const& [centre, length] : walls_at(body, 0.5 * (of.span[0] + of.span[1]))[first_body_ + body]) {
+  if (in_space) {
+    auto const walls = walls_at(body, 0.5 * (of.span[0] + of.span[1]));
+    for (auto const& [centre, length] : walls[first_body_ + body]) {
       Vec3 const arm = centre - b_.centre[body];
       extent.add(length, arm - dot(arm, of.axis) * of.axis);
       perimeter += length;
     }
+  }
   in_sight_[body] = has_images ? 1 : compactness(perimeter, b_.size[body]);
   if (!(in_sight_[body] > 0)) return;
   double gap = infinity;
