@@ -85,6 +85,13 @@ std::vector<MiddleNode> side_middle_nodes(Mesh const& mesh, Index element, int s
   return out;
 }
 
+Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates) {
+  auto const arm = [&](std::size_t k) { return coordinates[nodes[k]] - coordinates[nodes[0]]; };
+  Vec3 sum;
+  for (std::size_t k = 1; k + 1 < nodes.size(); ++k) sum += cross(arm(k), arm(k + 1));
+  return sum;
+}
+
 std::vector<Index32> patch_nodes(Patch const& patch) {
   std::vector<Index32> nodes = patch.faces.size() > 0 ? patch.faces.item : patch.nodes;
   std::sort(nodes.begin(), nodes.end());

@@ -31,6 +31,9 @@ std::vector<MiddleNode> side_middle_nodes(Mesh const& mesh, Index element, int s
 /// mean normal of its elements. (0, 0, 1) for a 3-D mesh.
 Vec3 plane_normal(Mesh const& mesh);
 
+/// The normal of a face, summed over the fan of triangles from its first node; twice as long as its area.
+Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates);
+
 /// All nodes of a patch, ascending, each once.
 std::vector<Index32> patch_nodes(Patch const& patch);
 

@@ -224,13 +224,6 @@ void add_axis(Lists const& lists, Planes const& planes, std::vector<Index32> con
 
 }  // namespace
 
-Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates) {
-  auto const arm = [&](std::size_t k) { return coordinates[nodes[k]] - coordinates[nodes[0]]; };
-  Vec3 sum;
-  for (std::size_t k = 1; k + 1 < nodes.size(); ++k) sum += cross(arm(k), arm(k + 1));
-  return sum;
-}
-
 Vec3 Wedge::turned(Vec3 const& v, int side) const {
   return dot(v, axis) * axis + dot(v, radial) * (cosine * radial + (side * sine) * normal);
 }

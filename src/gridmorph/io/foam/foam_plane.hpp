@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/io/foam/foam_lists.hpp>
-#include <gridmorph/mesh/mesh.hpp>
+#include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <array>
 #include <optional>
@@ -11,9 +11,6 @@
 #include <vector>
 
 namespace gridmorph::foam {
-
-/// The normal of a face, summed over the fan of triangles from its first node; twice as long as its area.
-Vec3 face_normal(std::span<Index32 const> nodes, Coordinates const& coordinates);
 
 /// Two planes that meet in an axis, and the one between them, across x, y or z as OpenFOAM asks for (wedgePolyPatch).
 /// Unit vectors: across that plane, and in it away from and along the axis; cosine and sine are those of half the angle

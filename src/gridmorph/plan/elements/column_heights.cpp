@@ -75,24 +75,33 @@ ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vect
   return out;
 }
 
-Columns cut(Columns const& columns, ColumnEnds const& ends) {
+Columns kept_nodes(Columns const& columns, std::function<bool(std::size_t)> const& keep) {
   Columns out;
-  out.height = ends.height;
-  out.full_rise = ends.rise;
-  // Ends are means of what neighbours have: columns that all end alike must not lose their ends to round-off.
-  constexpr double allowed = 1e-3;
-  std::vector<double> below(ends.height.size(), 0), risen = below;
+  out.height = columns.height;
+  out.full_rise = columns.full_rise;
   for (std::size_t k = 0; k < columns.node.size(); ++k) {
-    std::size_t const root = std::size_t(columns.root[k]);
-    double const above = columns.above_wall[k], layer = above - std::exchange(below[root], above);
-    double const rise = columns.rise[k], step = rise - std::exchange(risen[root], rise);
-    if (above > ends.height[root] + allowed * layer && rise > ends.rise[root] + allowed * step) continue;
+    if (!keep(k)) continue;
     out.node.push_back(columns.node[k]);
     out.root.push_back(columns.root[k]);
     out.below.push_back(columns.below[k]);
-    out.above_wall.push_back(above);
-    out.rise.push_back(rise);
+    out.above_wall.push_back(columns.above_wall[k]);
+    out.rise.push_back(columns.rise[k]);
   }
+  return out;
+}
+
+Columns cut(Columns const& columns, ColumnEnds const& ends) {
+  // Ends are means of what neighbours have: columns that all end alike must not lose their ends to round-off.
+  constexpr double allowed = 1e-3;
+  std::vector<double> below(ends.height.size(), 0), risen = below;
+  Columns out = kept_nodes(columns, [&](std::size_t k) {
+    std::size_t const root = std::size_t(columns.root[k]);
+    double const above = columns.above_wall[k], layer = above - std::exchange(below[root], above);
+    double const rise = columns.rise[k], step = rise - std::exchange(risen[root], rise);
+    return !(above > ends.height[root] + allowed * layer && rise > ends.rise[root] + allowed * step);
+  });
+  out.height = ends.height;
+  out.full_rise = ends.rise;
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <gridmorph/plan/elements/columns.hpp>
 #include <gridmorph/plan/elements/wall_distance.hpp>
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace gridmorph {
@@ -32,6 +34,9 @@ struct ColumnEnds {
 /// lean by 80 degrees, and columns rise like their neighbours and are six times as long. Cost O(wall nodes).
 ColumnEnds smooth_ends(NodeGraph const& graph, Columns const& columns, std::vector<double> const& most,
                        std::vector<double> const& longest = {});
+
+/// Those nodes of columns for which keep(k) is true, asked in their order; heights are not made anew.
+Columns kept_nodes(Columns const& columns, std::function<bool(std::size_t)> const& keep);
 
 /// Columns up to their ends; what is above belongs to the layers.
 Columns cut(Columns const& columns, ColumnEnds const& ends);

@@ -26,10 +26,7 @@ std::vector<Vec3> wall_directions(Mesh const& mesh, UnstructuredTopology const& 
   Coordinates const& x = mesh.coordinates;
   for (Index32 const f : faces) {
     auto const corners = topology.boundary.nodes[f];
-    Vec3 sum;
-    if (mesh.dimension == 2) sum = x[corners[1]] - x[corners[0]];
-    for (std::size_t c = 1; c + 1 < corners.size(); ++c)
-      sum += cross(x[corners[c]] - x[corners[0]], x[corners[c + 1]] - x[corners[0]]);
+    Vec3 const sum = mesh.dimension == 2 ? x[corners[1]] - x[corners[0]] : face_normal(corners, x);
     double const length = norm(sum);
     for (Index32 const n : corners) {
       auto const o = std::size_t(graph.representative[n]);

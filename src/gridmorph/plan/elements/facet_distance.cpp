@@ -51,4 +51,8 @@ double FacetDistance::operator()(Vec3 const& p, int& start) const {
   return std::sqrt(best);
 }
 
+double FacetDistance::at_least(Vec3 const& p) const {
+  return empty() ? std::numeric_limits<double>::infinity() : std::sqrt(boxes_.boxes.front().distance2(p));
+}
+
 }  // namespace gridmorph

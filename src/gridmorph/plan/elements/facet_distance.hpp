@@ -21,6 +21,8 @@ class FacetDistance {
   /// Infinite where there are no faces. start: any number from an earlier call, left for the next; the closer its place
   /// was, the faster: about O(log faces) where places follow one another.
   [[nodiscard]] double operator()(Vec3 const& p, int& start) const;
+  /// No more than the distance, at once: that from the box around all faces.
+  [[nodiscard]] double at_least(Vec3 const& p) const;
 
  private:
   using Triangle = std::array<Vec3, 3>;

@@ -112,7 +112,7 @@ Columns UnstructuredPlanner::columns_on(std::vector<int> const& patches, Mask co
   return with_copies(cut(whole, smooth_ends(out_.graph, whole, most)));
 }
 
-Columns UnstructuredPlanner::with_copies(Columns columns) const {
+Columns UnstructuredPlanner::with_copies(Columns const& columns) const {
   auto const& images = out_.boundary.images;
   if (images.empty()) return columns;
   Mask listed = mask(), ends = mask();
@@ -122,21 +122,10 @@ Columns UnstructuredPlanner::with_copies(Columns columns) const {
     if (listed[image.node] != listed[image.owner]) ends[image.node] = ends[image.owner] = 1;
   for (auto const& image : images)
     if (ends[image.owner] != 0) ends[image.node] = 1;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < columns.node.size(); ++k) {
-    if (ends[columns.node[k]] != 0 || ends[columns.below[k]] != 0) {
-      ends[columns.node[k]] = 1;
-      continue;
-    }
-    columns.node[kept] = columns.node[k];
-    columns.root[kept] = columns.root[k];
-    columns.below[kept] = columns.below[k];
-    columns.above_wall[kept] = columns.above_wall[k];
-    columns.rise[kept++] = columns.rise[k];
-  }
-  for (auto* list : {&columns.node, &columns.root, &columns.below}) list->resize(kept);
-  for (auto* list : {&columns.above_wall, &columns.rise}) list->resize(kept);
-  return columns;
+  return kept_nodes(columns, [&](std::size_t k) {
+    ends[columns.node[k]] |= ends[columns.below[k]];
+    return ends[columns.node[k]] == 0;
+  });
 }
 
 void UnstructuredPlanner::find_held_columns() {

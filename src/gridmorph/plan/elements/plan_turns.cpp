@@ -42,7 +42,9 @@ void UnstructuredPlanner::find_turning_bodies() {
     }
   };
   // Sides that follow a blade between hub and case move with it; to fade towards them would shear what is between.
-  bool const sides_move = !slots_beside_walls(Beside::anywhere).empty();
+  bool const sides_move = std::any_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(),
+                                      [](WallBody const& body) { return body.ends_curved && !body.attached; }) &&
+                          !slots_beside_walls(Beside::anywhere).empty();
   for (WallBody const& body : wall_bodies_.bodies) {
     bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
                                      [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });

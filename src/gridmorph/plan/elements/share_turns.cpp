@@ -1,8 +1,7 @@
-// What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings of plane meshes
-// by what it sees.
+// What share of each body's turn and shift a node makes: by its distances, and in narrow surroundings, of plane meshes
+// and of bodies from one slip surface to another, by what it sees.
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
-#include <gridmorph/kernels/facet_tree.hpp>
 #include <gridmorph/plan/elements/facet_distance.hpp>
 #include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
@@ -73,10 +72,9 @@ std::vector<SeenPiece> plan_view(Coordinates const& x, CsrGraph const& faces, Ve
   std::vector<SeenPiece> out;
   for (Index f = 0; f < faces.size(); ++f) {
     auto const face = faces[f];
-    Vec3 area, centre;
+    Vec3 const area = 0.5 * face_normal(face, x);
+    Vec3 centre;
     for (Index32 const n : face) centre += (1 / double(face.size())) * x[n];
-    for (std::size_t k = 2; k < face.size(); ++k)
-      area += 0.5 * cross(x[face[k - 1]] - x[face[0]], x[face[k]] - x[face[0]]);
     out.push_back({centre, norm(area - dot(area, axis) * axis) / height});
   }
   return out;
@@ -123,7 +121,8 @@ class Places {
   void add_resting_faces();
   void add_bodies();
   void look_around(std::size_t body, double edges);
-  [[nodiscard]] std::vector<std::vector<SeenPiece>> walls_at(std::size_t body, double height) const;
+  /// By group, as body sees them; in space its own section is left out.
+  [[nodiscard]] std::vector<std::vector<SeenPiece>> walls_around(std::size_t body) const;
   [[nodiscard]] bool turns_along(std::size_t body, Index32 surface) const;
   [[nodiscard]] bool turns_with(std::size_t body, std::size_t group) const {
     return group == first_body_ + body || (group < first_body_ && turns_along(body, groups_[group].surface));
@@ -149,7 +148,6 @@ class Places {
   bool images_shift_alike_ = true;    ///< no move turns
   std::vector<FaceGroup> groups_;
   std::size_t first_body_ = 0;
-  kernels::FacetBox body_box_;       ///< of a single body
   std::vector<FacetDistance> from_;  ///< per group
   std::vector<double> in_sight_;     ///< per body: how much what is in sight has a say in narrow surroundings
   std::vector<std::optional<Sight>> around_;
@@ -209,9 +207,6 @@ void Places::add_bodies() {
             gridmorph::distance(b_.mesh.coordinates[face[k]], b_.mesh.coordinates[face[(k + 1) % face.size()]]);
     }
     for (Index32 const n : body.nodes) g.columns = std::max(g.columns, b_.column_height[n]);
-    Box box;
-    for (Index32 const n : body.nodes) box.include(b_.mesh.coordinates[n]);
-    body_box_ = {box.low, box.high};
     // Without columns the first cells turn with the wall, about as high as its faces are long.
     g.layer = g.columns > 0 ? g.columns : edges.back() / double(n_edges);
     from_.emplace_back(b_.mesh.coordinates, g.faces);
@@ -230,11 +225,12 @@ void Places::look_around(std::size_t body, double edges) {
   bool const in_space = b_.mesh.dimension == 3, has_images = b_.moves.size() > 1;
   // In space, around corners, it falls off too fast: cubes in boxes fare better by distances.
   if (in_space && !of.is_spanned()) return;
+  CsrGraph const& own_faces = groups_[first_body_ + body].faces;
+  auto const own_section = [&](double height) { return section(b_.mesh.coordinates, own_faces, of.axis, height); };
   double perimeter = in_space ? 0 : 0.5 * edges;
   Moments extent;
   if (in_space) {
-    auto const walls = walls_at(body, 0.5 * (of.span[0] + of.span[1]));
-    for (auto const& [centre, length] : walls[first_body_ + body]) {
+    for (auto const& [centre, length] : own_section(0.5 * (of.span[0] + of.span[1]))) {
       Vec3 const arm = centre - b_.centre[body];
       extent.add(length, arm - dot(arm, of.axis) * of.axis);
       perimeter += length;
@@ -249,8 +245,9 @@ void Places::look_around(std::size_t body, double edges) {
       if (!turns_with(body, k)) gap = std::min(gap, from_[k](b_.mesh.coordinates[n], start[k]));
   if (!has_images && !(narrowness(gap, b_.size[body]) > 0)) return;
   Sight& sight = around_[body].emplace();
+  auto walls = walls_around(body);
   if (!in_space) {
-    sight.at.emplace_back(b_.host, SightPlane{b_.centre[body]}, walls_at(body, 0), from_, b_.size[body]);
+    sight.at.emplace_back(b_.host, SightPlane{b_.centre[body]}, walls, from_, b_.size[body]);
     return;
   }
   sight.axis = of.axis;
@@ -260,12 +257,13 @@ void Places::look_around(std::size_t body, double edges) {
   for (int k = 0; k < sections; ++k) {
     double const height = of.span[0] + (of.span[1] - of.span[0]) * (k + 0.5) / sections;
     Vec3 const centre = b_.centre[body] + (height - dot(of.axis, b_.centre[body])) * of.axis;
+    walls[first_body_ + body] = own_section(height);
     sight.height.push_back(height);
-    sight.at.emplace_back(b_.host, SightPlane{centre, along, across}, walls_at(body, height), from_, b_.size[body]);
+    sight.at.emplace_back(b_.host, SightPlane{centre, along, across}, walls, from_, b_.size[body]);
   }
 }
 
-std::vector<std::vector<SeenPiece>> Places::walls_at(std::size_t body, double height) const {
+std::vector<std::vector<SeenPiece>> Places::walls_around(std::size_t body) const {
   std::vector<std::vector<SeenPiece>> out;
   auto const& x = b_.mesh.coordinates;
   WallBody const& of = b_.bodies[body];
@@ -277,8 +275,6 @@ std::vector<std::vector<SeenPiece>> Places::walls_at(std::size_t body, double he
         Vec3 const a = x[faces[f][0]], b = x[faces[f][1]];
         wall.push_back({0.5 * (a + b), gridmorph::distance(a, b)});
       }
-    else if (k == first_body_ + body)
-      wall = section(x, faces, of.axis, height);
     else if (!turns_with(body, k))
       wall = plan_view(x, faces, of.axis, of.span[1] - of.span[0]);
   }
@@ -320,7 +316,7 @@ void Places::measure(Vec3 const& x, Room& room) const {
 void Places::measure_row(Vec3 const& x, Room& room) const {
   // Far images cost most: blades that are seen from afar at an angle have many boxes that are about as near.
   for (std::size_t m = 0; m < b_.moves.size(); ++m) {
-    room.least[m] = {m == 0 ? 0 : std::sqrt(body_box_.distance2(back_[m](x))), m};
+    room.least[m] = {m == 0 ? 0 : from_[first_body_].at_least(back_[m](x)), m};
     room.out_of_sight[m] = 0;
     distance(room, m, first_body_) = infinity;
   }

@@ -54,7 +54,8 @@ struct OtherFace {
 /// What one body ends on: the normals of slip surfaces at it.
 class EndsOfBody {
  public:
-  void add(Index32 node, std::span<Vec3 const> corners, SlipSurface const& surface, Index32 number) {
+  /// normal: of the face, weighed by its length.
+  void add(Index32 node, Vec3 const& normal, SlipSurface const& surface, Index32 number) {
     nodes_.push_back(node);
     if (surface.kind == SlipSurface::Kind::plane) {
       if (!(norm(plane_) > 0)) plane_ = surface.direction;
@@ -64,9 +65,6 @@ class EndsOfBody {
     }
     // A node that keeps its axial position alone may leave the boundary that it is on.
     is_surface_ = is_surface_ && surface.kind != SlipSurface::Kind::axial;
-    Vec3 normal;
-    for (std::size_t k = 2; k < corners.size(); ++k)
-      normal += cross(corners[k - 1] - corners[0], corners[k] - corners[0]);
     if (double const area = norm(normal); area > 0) normals_.add(1 / area, normal);
     auto const at = std::lower_bound(surfaces_.begin(), surfaces_.end(), number);
     if (at == surfaces_.end() || *at != number) surfaces_.insert(at, number);
@@ -84,7 +82,9 @@ class EndsOfBody {
       constexpr double alike = 0.9;
       PrincipalAxes const axes(normals_);
       axis = axes.direction[0];
-      slides = is_surface_ && axes.moment[0] >= alike * (axes.moment[0] + axes.moment[1] + axes.moment[2]);
+      // Edges of plane meshes have none.
+      slides = is_surface_ && axes.moment[0] > 0 &&
+               axes.moment[0] >= alike * (axes.moment[0] + axes.moment[1] + axes.moment[2]);
     }
     if (!slides || (norm(body.axis) > 0 && !are_parallel(axis, body.axis)))
       body.attached = true;
@@ -167,7 +167,6 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
   for (std::size_t n = 0; n < paired.size(); ++n)
     if (paired[n] != 0) paired[graph.representative[n]] = 1;
   std::vector<EndsOfBody> ends(out.bodies.size());
-  std::vector<Vec3> corners;
   for (Index f = 0; f < topology.boundary.size(); ++f) {
     if (of_wall[f] != 0) continue;
     nodes_of(f);
@@ -187,12 +186,11 @@ WallBodies find_wall_bodies(Mesh const& mesh, UnstructuredTopology const& topolo
           std::any_of(nodes.begin(), nodes.end(), [&](Index32 n) { return kinds.kind[n] == NodeKinds::periodic; });
       out.resting.periodic.push_back(periodic ? 1 : 0);
     }
-    corners.clear();
-    for (Index32 const n : topology.boundary.nodes[f]) corners.push_back(mesh.coordinates[n]);
+    Vec3 const normal = slips ? face_normal(topology.boundary.nodes[f], mesh.coordinates) : Vec3{};
     for (Index32 const n : nodes) {
       if (body_of[n] < 0) continue;
       if (slips)
-        ends[body_of[n]].add(n, corners, surfaces[face.surface], face.surface);
+        ends[body_of[n]].add(n, normal, surfaces[face.surface], face.surface);
       else
         out.bodies[body_of[n]].attached = true;
     }

@@ -128,7 +128,7 @@ class UnstructuredPlanner {
   /// Columns on walls, no higher than leaves room where moving walls come nearer by `motion`.
   [[nodiscard]] Columns columns_on(std::vector<int> const& patches, Mask const& taken, double motion) const;
   /// Without the parts of columns whose periodic copies are in none.
-  [[nodiscard]] Columns with_copies(Columns columns) const;
+  [[nodiscard]] Columns with_copies(Columns const& columns) const;
   [[nodiscard]] Index n_held() const { return standing_.size() + sliding_.size(); }
   /// The extent that a user gave the boundary layer on a face's patch, or the default one.
   [[nodiscard]] ColumnExtent extent_of_face(Index32 face) const;
