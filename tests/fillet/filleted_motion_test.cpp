@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -175,6 +177,11 @@ TEST_P(FilletedBlades, OfHexahedraKeepArcsAndHubWithARuleForTheBladeAlone) {
       for (Index32 const n : patch_nodes(patch)) on_hub.push_back(one.mesh.coordinates[n]);
   expect_on_hub_and_round(on_hub, arcs_of(blocks), after);
   EXPECT_EQ(one.inverted(morphed.x), 0);
+  // Where the arc runs out on the hub, nodes above its edge have the arc's motion: nothing that slides goes along there.
+  UnstructuredPlan const& plan = morphed.prepared.plan;
+  ASSERT_FALSE(plan.sliding.empty());
+  for (Index32 const root : plan.sliding_root)
+    EXPECT_FALSE(std::binary_search(plan.driving.begin(), plan.driving.end(), root));
 }
 
 }  // namespace

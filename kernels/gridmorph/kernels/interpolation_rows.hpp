@@ -12,6 +12,7 @@
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/launch.hpp>
 
+#include <type_traits>
 #include <vector>
 
 namespace gridmorph::kernels {
@@ -33,19 +34,23 @@ struct LayerTable {
   std::vector<Index> level{0};  ///< first row of each layer, and the end
 };
 
+/// The weighted mean that row r makes of source[item].
+template <class MemorySpace, class Source>
+KOKKOS_INLINE_FUNCTION auto mean_of_row(InterpolationTable<MemorySpace> const& rows, Source const& source, Index r) {
+  Index const from = rows.first(r), to = rows.first(r + 1);
+  auto const base = source[rows.item(from)];
+  std::remove_const_t<decltype(base)> sum{};
+  for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (source[rows.item(k)] - base);
+  return base + sum;
+}
+
 /// Source: what source[item] is read from. Value has +, -, and a number times it; Value{} is zero.
 template <class MemorySpace, class Source, class Value>
 struct InterpolateRows {
   InterpolationTable<MemorySpace> rows;
   Source source;
   Value* value;
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const {
-    Index const from = rows.first(r), to = rows.first(r + 1);
-    Value const base = source[rows.item(from)];
-    Value sum{};
-    for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (source[rows.item(k)] - base);
-    value[rows.target(r)] = base + sum;
-  }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { value[rows.target(r)] = mean_of_row(rows, source, r); }
 };
 
 /// Rows begin <= r < end. `source` and `value` may be the same array where no row of them names the target of another.

@@ -24,10 +24,15 @@ struct FacetBoxes {
   /// than limit(), the square of the best distance so far. Host.
   template <class Look, class Limit>
   void for_each_nearer(Vec3 const& p, Look const& look, Limit const& limit) const {
+    for_each_nearer(look, limit, [&](int box) { return boxes[box].distance2(p); });
+  }
+  /// The same with squares of distances, or less, of one's own: away2(box).
+  template <class Look, class Limit, class Away>
+  void for_each_nearer(Look const& look, Limit const& limit, Away const& away2) const {
     // One per level that was passed, and two.
     std::array<std::pair<double, int>, kernels::FacetTreeView::max_depth + 1> waiting;
     std::size_t n_waiting = 0;
-    auto const wait = [&](int box) { waiting[n_waiting++] = {boxes[box].distance2(p), box}; };
+    auto const wait = [&](int box) { waiting[n_waiting++] = {away2(box), box}; };
     if (!boxes.empty()) wait(0);
     while (n_waiting > 0) {
       auto const [away, b] = waiting[--n_waiting];

@@ -458,6 +458,11 @@ bool BoundaryMotion::slides_upstream(int rule, Vec3 const& point) const {
   return row != nullptr && row->is_upstream(point);
 }
 
+CylindricalFrame const* BoundaryMotion::row_frame(int rule) const {
+  RowMotion const* row = impl_->row_of_rule[rule];
+  return row == nullptr ? nullptr : &row->frame();
+}
+
 bool BoundaryMotion::gives_way(int rule, int patch) const {
   RowMotion const* row = impl_->row_of_rule[rule];
   return row != nullptr && patch >= 0 && row->gives_way_to(patch);

@@ -13,6 +13,7 @@
 
 namespace gridmorph {
 
+class CylindricalFrame;
 class FfdMotion;
 
 /// resolve() (motion/motion.hpp) of what has names alone.
@@ -62,6 +63,9 @@ class BoundaryMotion {
 
   /// Whether a point lies upstream of the middle of the blade that circumferential-slide rule number r names.
   [[nodiscard]] bool slides_upstream(int rule, Vec3 const& point) const;
+
+  /// The frame of the row whose blade rule number r follows or slides with; null for other rules.
+  [[nodiscard]] CylindricalFrame const* row_frame(int rule) const;
 
   /// Whether what rule number r gives to nodes of a patch is the rule of that patch, seen through sections cut from its
   /// facets: the patch's own rule says it better.

@@ -47,6 +47,9 @@ struct ElementOptions {
   /// A displacement of the boundary nodes (BoundaryConditions::known) like which those to come bend and stretch walls,
   /// by another factor; empty: not known. Not looked at where the displacement is.
   std::vector<Vec3> shape;
+  /// Whether all of a passage may go with sides that follow its blade: not where the two sides differ in displacements
+  /// to come (passages of a wheel). Where they do in the one that the plan knows, it does not.
+  bool with_sides = true;
   /// Cells of the wrap's lattice along the longest extent of the walls; few are best (WrapOptions::resolution).
   int resolution = 4;
   /// A tube with an O-type background mesh around it instead, where one fits (WrapOptions::tube); not by least squares.

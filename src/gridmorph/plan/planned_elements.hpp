@@ -16,6 +16,7 @@ struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 /// What was found on the way, for reports and pictures.
 struct UnstructuredReport {
   bool by_least_squares = false;  ///< whether least squares carry the walls' motion, without wrap and background mesh
+  bool with_sides = false;        ///< whether all of a passage goes with sides that follow its blade
   double layer_height = 0;        ///< of the highest column
   Index n_columns = 0;
   double offset = 0;

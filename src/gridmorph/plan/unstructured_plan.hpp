@@ -8,6 +8,7 @@
 
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/body_turn.hpp>
+#include <gridmorph/kernels/passage_motion.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/plan/common_motion.hpp>
 #include <gridmorph/plan/elements/columns.hpp>
@@ -61,6 +62,19 @@ struct TurningBodies {
   [[nodiscard]] Index size() const { return Index(centre.size()); }
 };
 
+/// What sides of a passage do that follow its blade, done by all nodes (kernels/passage_motion.hpp). What the walls do
+/// besides fades from them to the boundaries that rules displace.
+struct MotionOfSides {
+  kernels::RowFrame frame;
+  std::vector<Index32> slots;    ///< of nodes of the sides, in UnstructuredPlan::known
+  InterpolationOperator nodes;   ///< numbers in `slots` -> nodes
+  InterpolationOperator rigid;   ///< those of walls and columns among them
+  InterpolationOperator places;  ///< -> kernels::passage_places for each driving node
+  std::vector<double> step;      ///< kernels::PassageSlopes::step
+
+  [[nodiscard]] bool empty() const { return slots.empty(); }
+};
+
 struct UnstructuredPlan;
 
 /// A part of a mesh that nothing connects with the others, or whose boundaries have a motion in common; it has a plan
@@ -99,6 +113,7 @@ struct UnstructuredPlan {
   std::vector<Vec3> lines;
   ColumnPlan columns;
   TurningBodies turns_of_bodies;
+  MotionOfSides passage;
   /// What carries the motion of the walls to what is between them: the smooth part of their displacement, and over all
   /// nodes of near and partially wrapped elements what it misses. By NearFieldMethod::layers there is none, and layers
   /// carry all of it.

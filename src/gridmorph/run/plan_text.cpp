@@ -86,8 +86,9 @@ std::string part_headline(PlannedPart const& p) {
   if (r.by_least_squares)
     return fmt::format(
         "near field: least squares at the scale of the distance from the walls, for all nodes; {} columns up to {:.4g} "
-        "high, {} layers beyond them; {} elements nearer than {:.4g}, {} partly, {} farther\n",
-        r.n_columns, r.layer_height, r.n_layers, r.regions.n_near, r.offset, r.regions.n_partial, r.regions.n_far);
+        "high, {} layers beyond them; {} elements nearer than {:.4g}, {} partly, {} farther{}\n",
+        r.n_columns, r.layer_height, r.n_layers, r.regions.n_near, r.offset, r.regions.n_partial, r.regions.n_far,
+        r.with_sides ? "; all of the passage goes with its sides" : "");
   std::string text = fmt::format(
       "near field: {}, {} columns up to {:.4g} high, {} near elements, {} partially wrapped, {} far; {} layers\n",
       r.wrap ? fmt::format("offset {:.4g}", r.offset) : std::string("the hole of the background mesh"), r.n_columns,

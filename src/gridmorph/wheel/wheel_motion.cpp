@@ -118,15 +118,22 @@ std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, Pla
   if (options.elements.motion >= 0) return {};
   std::optional<std::vector<Vec3>> most;
   double largest = -1;
+  std::vector<Vec3> first;
   for (int p = 0; p < passages_.n_passages(); ++p) {
     if (passages_.first_alike(p) < p) continue;
     auto displacement = passages_.boundary(p);
     double const now = largest_norm(displacement);
+    // What sides do that one passage shares with another blade's is not what all of either does.
+    constexpr double alike = 1e-9;
+    if (first.empty()) first = displacement;
+    for (std::size_t k = 0; k < first.size(); ++k)
+      if (!(distance(first[k], displacement[k]) <= alike * std::max(now, largest))) options.elements.with_sides = false;
     if (now <= largest) continue;
     largest = now;
     most = std::move(displacement);
   }
   if (used_.size() == 1 && asked.times.steps == 0) return most;
+  if (used_.size() > 1 && asked.times.steps > 0) options.elements.with_sides = false;
   for (int step = 0; step < asked.times.steps; ++step)
     for (auto const& values : values_of(asked.times.motions(step))) largest = std::max(largest, largest_norm(values));
   options.elements.motion = largest;  // what turns leave of it differs from blade to blade

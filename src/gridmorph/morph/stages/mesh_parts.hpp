@@ -11,6 +11,7 @@
 #include <gridmorph/morph/stages/near_fit.hpp>
 #include <gridmorph/morph/stages/near_layers.hpp>
 #include <gridmorph/morph/stages/other_boundaries.hpp>
+#include <gridmorph/morph/stages/passage_motion.hpp>
 #include <gridmorph/morph/stages/run_stages.hpp>
 #include <gridmorph/morph/stages/wall_motion.hpp>
 
@@ -25,10 +26,10 @@
 namespace gridmorph::stages {
 
 template <class Exec>
-using ElementStage =
-    std::variant<WallMotion<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, NearFit<Exec>, FarField<Exec>,
-                 AddTurns<Exec>, StartResidual<Exec>, PrescribeAtBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>,
-                 GoAlong<Exec>, SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
+using ElementStage = std::variant<WallMotion<Exec>, TakePassage<Exec>, TakeTurns<Exec>, NearField<Exec>,
+                                  NearLayers<Exec>, NearFit<Exec>, FarField<Exec>, AddTurns<Exec>, AddPassage<Exec>,
+                                  StartResidual<Exec>, PrescribeAtBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>,
+                                  GoAlong<Exec>, SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>>;
 
 /// The stages of a plan without parts.
 template <class Exec>
@@ -40,6 +41,11 @@ struct ElementStages {
   ElementStages(Exec const& exec, UnstructuredPlan const& plan, bool velocity, std::vector<Vec3> const* back,
                 CommonMotion const* common = nullptr, Baseline const& x = {}) {
     walls.emplace_back(WallMotion<Exec>(exec, plan, velocity, back));
+    SharedPassage<Exec> passage;
+    if (!plan.passage.empty()) {
+      passage = std::make_shared<PassageTables<Exec> const>(exec, plan, back != nullptr);
+      walls.emplace_back(TakePassage<Exec>(passage));
+    }
     SharedBodyTurns<Exec> turns;
     if (plan.turns_of_bodies.size() > 0) {
       turns = std::make_shared<BodyTurnTables<Exec> const>(exec, plan, velocity, back != nullptr);
@@ -53,6 +59,7 @@ struct ElementStages {
       walls.emplace_back(NearField<Exec>(exec, plan, back));
     if (plan.background) walls.emplace_back(FarField<Exec>(exec, plan, velocity, back != nullptr));
     if (turns) walls.emplace_back(AddTurns<Exec>(turns));
+    if (passage) walls.emplace_back(AddPassage<Exec>(passage));
     add_other_boundaries(others, exec, plan, back, common, x);
     add_followers(others, exec, plan, back != nullptr, common, x);
   }

@@ -91,11 +91,11 @@ struct WriteElements {
 
 /// Visited by the host, once per stage and call.
 template <class Exec>
-using Stage =
-    std::variant<BoundaryValues<Exec>, LineSweep<Exec>, AddCommon<Exec>, SlipSpread<Exec>, WallMotion<Exec>,
-                 TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, NearFit<Exec>, FarField<Exec>, AddTurns<Exec>,
-                 StartResidual<Exec>, PrescribeAtBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>, GoAlong<Exec>,
-                 SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>, MorphParts<Exec>>;
+using Stage = std::variant<BoundaryValues<Exec>, LineSweep<Exec>, AddCommon<Exec>, SlipSpread<Exec>, WallMotion<Exec>,
+                           TakePassage<Exec>, TakeTurns<Exec>, NearField<Exec>, NearLayers<Exec>, NearFit<Exec>,
+                           FarField<Exec>, AddTurns<Exec>, AddPassage<Exec>, StartResidual<Exec>,
+                           PrescribeAtBoundary<Exec>, MeanOfImages<Exec>, JointNodes<Exec>, GoAlong<Exec>,
+                           SpreadResidual<Exec>, FollowCorners<Exec>, CopyNodes<Exec>, MorphParts<Exec>>;
 
 template <class Exec>
 struct StageList {

@@ -160,6 +160,8 @@ class RowMotion {
   RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
             SlipSurfaces const& surfaces, PatchDisplacement const& displacement, std::vector<std::string>& notes);
 
+  [[nodiscard]] CylindricalFrame const& frame() const { return frame_; }
+
   /// What a node of inlet or exit is displaced by: turned by the angle of the leading edge (upstream of mid-chord) or
   /// trailing edge at this span.
   [[nodiscard]] Vec3 slide(Vec3 const& point) const;

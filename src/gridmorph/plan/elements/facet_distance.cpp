@@ -1,5 +1,8 @@
 #include <gridmorph/plan/elements/facet_distance.hpp>
 
+#include <gridmorph/kernels/symmetric_eigen.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +29,64 @@ FacetDistance::FacetDistance(Coordinates const& coordinates, CsrGraph const& fac
     corners.push_back({first, first + 1, first + 2, -1});
   }
   boxes_ = FacetBoxes(points, corners);
+  // Boxes come before those that they hold, whose facets follow one another.
+  std::vector<std::array<int, 2>> range(boxes_.boxes.size());
+  tilted_.resize(range.size());
+  for (std::size_t b = range.size(); b-- > 0;) {
+    kernels::FacetBox const& box = boxes_.boxes[b];
+    if (box.count > 0)
+      range[b] = {box.first, box.first + box.count};
+    else
+      range[b] = {range[box.first][0], range[box.first + 1][1]};
+    tilted_[b] = tilted(range[b][0], range[b][1]);
+  }
+}
+
+FacetDistance::TiltedBox FacetDistance::tilted(int begin, int end) const {
+  TiltedBox out;
+  double const share = 1 / (3.0 * (end - begin));
+  for (int k = begin; k < end; ++k)
+    for (Vec3 const& p : triangles_[boxes_.order[k]]) out.centre += share * p;
+  double moments[3][3] = {}, axis[3][3];
+  for (int k = begin; k < end; ++k)
+    for (Vec3 const& p : triangles_[boxes_.order[k]]) {
+      Vec3 const d = p - out.centre;
+      double const c[3] = {d.x, d.y, d.z};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) moments[i][j] += c[i] * c[j];
+    }
+  kernels::diagonalise(moments, axis);
+  double size = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.axis[a] = {axis[a][0], axis[a][1], axis[a][2]};
+    out.low[a] = std::numeric_limits<double>::infinity();
+    out.high[a] = -out.low[a];
+    for (int k = begin; k < end; ++k)
+      for (Vec3 const& p : triangles_[boxes_.order[k]]) {
+        double const at = dot(out.axis[a], p - out.centre);
+        out.low[a] = std::min(out.low[a], at);
+        out.high[a] = std::max(out.high[a], at);
+        size = std::max(size, std::abs(at));
+      }
+  }
+  // What rounding makes of these must not leave a facet out.
+  double const slack = 1e-12 * (size + norm(out.centre));
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.low[a] -= slack;
+    out.high[a] += slack;
+  }
+  return out;
+}
+
+double FacetDistance::TiltedBox::distance2(Vec3 const& p) const {
+  Vec3 const d = p - centre;
+  double sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double const at = dot(axis[a], d), outside = std::max({low[a] - at, at - high[a], 0.0});
+    sum += outside * outside;
+  }
+  // By less than the rounding of what lies beyond.
+  return (1 - 1e-12) * sum;
 }
 
 double FacetDistance::squared(Triangle const& t, Vec3 const& p) {
@@ -40,14 +101,13 @@ double FacetDistance::operator()(Vec3 const& p, int& start) const {
   if (start < 0 || std::size_t(start) >= triangles_.size()) start = 0;
   double best = squared(triangles_[start], p);
   boxes_.for_each_nearer(
-      p,
       [&](int t) {
         if (double const d = squared(triangles_[t], p); d < best) {
           best = d;
           start = t;
         }
       },
-      [&] { return best; });
+      [&] { return best; }, [&](int box) { return tilted_[box].distance2(p); });
   return std::sqrt(best);
 }
 

@@ -26,10 +26,20 @@ class FacetDistance {
 
  private:
   using Triangle = std::array<Vec3, 3>;
+  /// A box along the principal axes of its facets. Far off, patches that lie aslant are nearer than their boxes along
+  /// the coordinate axes by so much that most of these would have to be opened.
+  struct TiltedBox {
+    Vec3 centre;
+    std::array<Vec3, 3> axis;
+    std::array<double, 3> low, high;
+    [[nodiscard]] double distance2(Vec3 const& p) const;
+  };
+  [[nodiscard]] TiltedBox tilted(int begin, int end) const;
   [[nodiscard]] static double squared(Triangle const& t, Vec3 const& p);
 
   std::vector<Triangle> triangles_;
   FacetBoxes boxes_;
+  std::vector<TiltedBox> tilted_;  ///< of boxes_
 };
 
 }  // namespace gridmorph

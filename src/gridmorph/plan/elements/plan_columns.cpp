@@ -136,7 +136,10 @@ void UnstructuredPlanner::find_held_columns() {
   // On another surface too a node has its own way to slip.
   for (Index32 const n : out_.boundary.slip_nodes) taken[n] = 1;
   // They follow the motion, as far as their wall does.
-  sliding_ = columns_on(out_.boundary.sliding_patches, taken, 0);
+  Columns const sliding = columns_on(out_.boundary.sliding_patches, taken, 0);
+  // On the edge of a moving wall, as where a fillet runs out, nodes have that wall's motion, and nothing to go along
+  // with.
+  sliding_ = kept_nodes(sliding, [&](std::size_t k) { return drives_[sliding.root[k]] == 0; });
   for (Index32 const n : sliding_.node) is_other_[n] = 1;
   for (Index32 const n : standing_.node) is_other_[n] = 1;
 }

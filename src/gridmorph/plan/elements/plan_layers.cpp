@@ -173,10 +173,11 @@ void UnstructuredPlanner::plan_fit() {
   auto const turns_freely = [&](WallBody const& body) { return mesh_.dimension == 2 || norm(body.axis) == 0; };
   bool const taken_off =
       all_walls_turn() && std::all_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(), turns_freely);
-  plan.beside_slots = slots_beside_walls(Beside::anywhere);
+  if (plan.passage.empty()) plan.beside_slots = slots_beside_walls(Beside::anywhere);
   std::vector<Index32> const sources = plan.smooth_sources();
   plan.fit = make_least_squares_field(host_, mesh_.coordinates, {sources, plan.driving.size(), areas(sources), images},
                                       taken_off ? MeanTurn::taken_off : MeanTurn::left, readers);
+  plan_passage();
 }
 
 void UnstructuredPlanner::plan_smooth_walls() {

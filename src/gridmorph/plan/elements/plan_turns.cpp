@@ -42,13 +42,14 @@ void UnstructuredPlanner::find_turning_bodies() {
     }
   };
   // Sides that follow a blade between hub and case move with it; to fade towards them would shear what is between.
+  find_passage();
   bool const sides_move = std::any_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(),
                                       [](WallBody const& body) { return body.ends_curved && !body.attached; }) &&
                           !slots_beside_walls(Beside::anywhere).empty();
   for (WallBody const& body : wall_bodies_.bodies) {
     bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
                                      [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });
-    if (rotates && !body.attached && !(sides_move && body.ends_curved))
+    if (rotates && !body.attached && !(sides_move && body.ends_curved) && out_.plan.passage.empty())
       turning.push_back(body);
     else
       rest(body);
@@ -85,6 +86,7 @@ bool UnstructuredPlanner::goes_by_least_squares() {
         "near field: by the lattice in place of least squares, since there is a background mesh of your own");
   if (of.background) return false;
   if (of.method != NearFieldMethod::automatic) return asked;
+  if (!out_.plan.passage.empty()) return true;
   // Walls around the mesh are no bodies in it. In rows of blades whose sides follow them the lattice keeps more.
   bool const is_periodic = std::any_of(mesh_.connections.begin(), mesh_.connections.end(),
                                        [](Connection const& c) { return c.periodic.has_value(); });

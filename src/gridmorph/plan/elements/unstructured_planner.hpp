@@ -172,6 +172,16 @@ class UnstructuredPlanner {
   /// Finds the shares in turns and shifts of all nodes that are not given.
   void share_turns(Mask const& given);
 
+  // plan_passage.cpp
+  /// Finds sides that follow a blade, and plans what nodes do with them; nothing where the sides differ or end at the
+  /// blade, where a method is asked for that has no use for it, or what the sides do is not known.
+  void find_passage();
+  /// Their places in `known` and the frame of their row; none where there are several frames, or other boundaries move.
+  [[nodiscard]] std::vector<Index32> slots_of_following_sides(std::vector<Vec3> const& given,
+                                                              kernels::RowFrame& frame) const;
+  /// Plans what walls and columns do with the sides, and how the rest fades; needs the columns and the fit.
+  void plan_passage();
+
   // plan_domain.cpp
   /// The chart of wrap and background, and what nodes do on the sides that the mesh ends on.
   [[nodiscard]] ChartedDomain find_domain() const;
