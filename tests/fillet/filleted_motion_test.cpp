@@ -177,7 +177,8 @@ TEST_P(FilletedBlades, OfHexahedraKeepArcsAndHubWithARuleForTheBladeAlone) {
       for (Index32 const n : patch_nodes(patch)) on_hub.push_back(one.mesh.coordinates[n]);
   expect_on_hub_and_round(on_hub, arcs_of(blocks), after);
   EXPECT_EQ(one.inverted(morphed.x), 0);
-  // Where the arc runs out on the hub, nodes above its edge have the arc's motion: nothing that slides goes along there.
+  // Where the arc runs out on the hub, nodes above its edge have the arc's motion: nothing that slides goes along
+  // there.
   UnstructuredPlan const& plan = morphed.prepared.plan;
   ASSERT_FALSE(plan.sliding.empty());
   for (Index32 const root : plan.sliding_root)
