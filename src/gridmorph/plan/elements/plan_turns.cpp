@@ -41,15 +41,19 @@ void UnstructuredPlanner::find_turning_bodies() {
       wall_bodies_.resting.periodic.push_back(0);
     }
   };
+  auto const is_whole = [&](WallBody const& body) {
+    return !body.attached && std::all_of(body.nodes.begin(), body.nodes.end(),
+                                         [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });
+  };
+  auto& bodies = wall_bodies_.bodies;
+  if (options_.elements.method == NearFieldMethod::least_squares || std::all_of(bodies.begin(), bodies.end(), is_whole))
+    find_passage();
   // Sides that follow a blade between hub and case move with it; to fade towards them would shear what is between.
-  find_passage();
-  bool const sides_move = std::any_of(wall_bodies_.bodies.begin(), wall_bodies_.bodies.end(),
+  bool const sides_move = std::any_of(bodies.begin(), bodies.end(),
                                       [](WallBody const& body) { return body.ends_curved && !body.attached; }) &&
                           !slots_beside_walls(Beside::anywhere).empty();
-  for (WallBody const& body : wall_bodies_.bodies) {
-    bool const rotates = std::all_of(body.nodes.begin(), body.nodes.end(),
-                                     [&](Index32 n) { return modes[n] == BoundaryLayer::Mode::rotate; });
-    if (rotates && !body.attached && !(sides_move && body.ends_curved) && out_.plan.passage.empty())
+  for (WallBody const& body : bodies) {
+    if (is_whole(body) && !(sides_move && body.ends_curved) && out_.plan.passage.empty())
       turning.push_back(body);
     else
       rest(body);
@@ -63,8 +67,8 @@ void UnstructuredPlanner::find_turning_bodies() {
                          std::to_string(most_bodies) + " do");
     turning.resize(most_bodies);
   }
-  wall_bodies_.bodies = std::move(turning);
-  for (WallBody const& body : wall_bodies_.bodies) add_turning_body(body);
+  bodies = std::move(turning);
+  for (WallBody const& body : bodies) add_turning_body(body);
   fitted_ = out_.report.by_least_squares = goes_by_least_squares();
   if (wall_bodies_.bodies.empty()) return;
   add_other_boundaries();
