@@ -13,8 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>

@@ -250,6 +250,7 @@ UnstructuredCase cascade_between_cones(Mesh const& section, int layers = 3) {
       side.periodic = periodic_rotation({0, 0, 0}, {1, 0, 0}, -side.periodic->translation.y / Cones::radius);
   return UnstructuredCase(std::move(mesh));
 }
+
 TEST(StackedCascade, BetweenConesEveryLayerMovesAsTheSectionDoes) {
   // By the lattice thousands of elements were inverted at 10 degrees.
   UnstructuredCase const flat = section_of_cascade();

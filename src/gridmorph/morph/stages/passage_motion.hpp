@@ -9,6 +9,7 @@
 #include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
