@@ -24,7 +24,7 @@ int run_blocks_command(CommandLine const& options, Terminal& terminal) {
   terminal.progress("reading " + options.input.string());
   Mesh elements = load_mesh(options.input, {}, options.leave_out);
   terminal.progress("looking for blocks");
-  ElementsAsBlocks found{IndexedMesh(std::move(elements))};
+  ElementsAsBlocks found(IndexedMesh(std::move(elements)), ElementsAsBlocks::Lines::any);
   if (!found.why_none().empty()) throw MeshError(found.why_none() + ", so that it is no mesh of blocks");
   Mesh const blocks = found.take_blocks();
   terminal.progress("writing " + output);

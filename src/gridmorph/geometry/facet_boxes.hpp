@@ -32,19 +32,21 @@ struct FacetBoxes {
     // One per level that was passed, and two.
     std::array<std::pair<double, int>, kernels::FacetTreeView::max_depth + 1> waiting;
     std::size_t n_waiting = 0;
-    auto const wait = [&](int box) { waiting[n_waiting++] = {away2(box), box}; };
-    if (!boxes.empty()) wait(0);
+    auto const wait = [&](std::pair<double, int> const& at) {
+      if (!(at.first > limit())) waiting[n_waiting++] = at;
+    };
+    auto const at = [&](int box) { return std::pair{double(away2(box)), box}; };
+    if (!boxes.empty()) wait(at(0));
     while (n_waiting > 0) {
       auto const [away, b] = waiting[--n_waiting];
       if (away > limit()) continue;
       kernels::FacetBox const& box = boxes[b];
       for (int n = box.first; n < box.first + box.count; ++n) look(order[n]);
       if (box.count > 0) continue;
-      wait(box.first);
-      wait(box.first + 1);
       // The nearer one is looked at first.
-      if (waiting[n_waiting - 2].first < waiting[n_waiting - 1].first)
-        std::swap(waiting[n_waiting - 2], waiting[n_waiting - 1]);
+      auto const one = at(box.first), other = at(box.first + 1);
+      wait(one.first < other.first ? other : one);
+      wait(one.first < other.first ? one : other);
     }
   }
 };

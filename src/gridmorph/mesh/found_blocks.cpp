@@ -1,4 +1,3 @@
-#include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/mesh/detail/block_sides.hpp>
 #include <gridmorph/mesh/detail/hex_links.hpp>
@@ -6,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <span>
@@ -53,8 +54,21 @@ Around next(HexLinks const& links, Around const& at) {
   return {link.cell, side_at[there][end], link.side};
 }
 
+/// Whether four different cells lie around an edge inside: what is behind both of its sides has one behind it in
+/// common. Where not, is_regular() goes all the way around.
+bool has_four_cells(HexLinks const& links, Index32 cell, CellEdge const& edge) {
+  if (links.behind(cell_side(cell, edge.side)) < 0 || links.behind(cell_side(cell, edge.other)) < 0) return false;
+  Around const a = next(links, {cell, edge.side, edge.other}), b = next(links, {cell, edge.other, edge.side});
+  CellSide const behind_b = links.behind(cell_side(b.cell, b.through));
+  if (behind_b < 0 || links.behind(cell_side(a.cell, a.through)) < 0) return false;
+  Around const c = next(links, a);
+  bool const differ = a.cell != b.cell && a.cell != cell && b.cell != cell && c.cell != cell && c.cell != a.cell;
+  return differ && cell_side(c.cell, c.through) == behind_b;
+}
+
 /// Whether grid lines go on through an edge: four cells around it, or on the boundary one or two.
 bool is_regular(HexLinks const& links, Index32 cell, CellEdge const& edge) {
+  if (has_four_cells(links, cell, edge)) return true;
   constexpr int most = 5;
   int count = 1;
   Around at{cell, edge.side, edge.other};
@@ -72,63 +86,75 @@ bool is_regular(HexLinks const& links, Index32 cell, CellEdge const& edge) {
   return false;
 }
 
-/// Faces joined across regular edges, and which of them are limits of blocks.
+/// The faces that are limits of blocks. A sheet is what one face reaches across regular edges; sheets from edges that
+/// are not are limits, and others can be made so.
 class Sheets {
  public:
   Sheets(HostInstance const& host, HexLinks const& links, Index n_cells)
-      : links_(links), irregular_(std::size_t(n_cells), 0) {
+      : links_(links), irregular_(std::size_t(n_cells), 0), limit_(std::size_t(6 * n_cells), 0) {
     detail::for_all(host, "gridmorph::regular_edges", n_cells, [&](Index e) {
       if (!links.is_hexahedron(Index32(e))) return;
       for (std::size_t k = 0; k < 12; ++k)
         if (!is_regular(links, Index32(e), edges[k])) irregular_[e] |= std::uint16_t(1u << k);
     });
-    DisjointSets<Index32> sets(std::size_t(6 * n_cells));  // of face()
     for (Index32 e = 0; e < n_cells; ++e)
-      if (links.is_hexahedron(e)) join(e, sets);
-    sheet_ = sets.roots();
-    limit_.assign(6 * n_cells, 0);
-    for (Index32 e = 0; e < n_cells; ++e)
-      for (std::size_t k = 0; k < 12; ++k)
-        if ((irregular_[e] & (1u << k)) != 0)
-          for (int const side : {edges[k].side, edges[k].other})
-            if (links.behind(cell_side(e, side)) >= 0) make_limit(cell_side(e, side));
+      for (std::size_t k = 0; k < 12 && irregular_[e] != 0; ++k)
+        if (is_irregular(e, k))
+          for (int const side : {edges[k].side, edges[k].other}) make_limit(cell_side(e, side));
   }
 
   /// Blocks end at the whole sheet of a side.
-  void make_limit(CellSide s) { limit_[sheet_[face(s)]] = 1; }
-  [[nodiscard]] bool is_limit(CellSide s) const { return limit_[sheet_[face(s)]] != 0; }
-
- private:
-  /// One number for both sides of a face.
-  [[nodiscard]] CellSide face(CellSide s) const {
-    CellSide const other = links_.behind(s);
-    return other < 0 ? s : std::min(s, other);
-  }
-  /// At each regular edge inside, a side with the one that goes on behind the other side.
-  void join(Index32 e, DisjointSets<Index32>& sets) const {
-    for (std::size_t k = 0; k < 12; ++k) {
-      if ((irregular_[e] & (1u << k)) != 0) continue;
-      for (auto const& [side, through] :
-           {std::pair(edges[k].side, edges[k].other), std::pair(edges[k].other, edges[k].side)}) {
-        CellSide const own = cell_side(e, side);
-        if (links_.behind(own) < own || links_.behind(cell_side(e, through)) < 0) continue;  // once for both cells
-        Around const on = next(links_, {e, through, side});
-        CellSide const opposite = cell_side(on.cell, on.through);
-        if (links_.behind(opposite) >= 0) sets.join(own, face(opposite));
+  void make_limit(CellSide s) {
+    std::vector<CellSide> pending;
+    auto const mark = [&](CellSide side) {
+      CellSide const other = links_.behind(side);
+      if (other < 0 || limit_[side] != 0) return;
+      limit_[side] = limit_[other] = 1;
+      pending.push_back(side);
+    };
+    mark(s);
+    while (!pending.empty()) {
+      CellSide const from = pending.back();
+      pending.pop_back();
+      Index32 const e = from / 6;
+      // At each regular edge inside it goes on behind the other side there.
+      for (std::size_t k = 0; k < 12; ++k) {
+        auto const [side, other] = edges[k];
+        if ((side != from % 6 && other != from % 6) || is_irregular(e, k)) continue;
+        int const through = side == from % 6 ? other : side;
+        if (links_.behind(cell_side(e, through)) < 0) continue;
+        Around const on = next(links_, {e, through, from % 6});
+        mark(cell_side(on.cell, on.through));
       }
     }
   }
+  [[nodiscard]] bool is_limit(CellSide s) const { return limit_[s] != 0; }
+
+ private:
+  [[nodiscard]] bool is_irregular(Index32 e, std::size_t edge) const { return (irregular_[e] & (1u << edge)) != 0; }
 
   HexLinks const& links_;
   std::vector<std::uint16_t> irregular_;  ///< a bit per edge
-  std::vector<Index32> sheet_;            ///< of face(), by the smallest of its faces
-  std::vector<std::uint8_t> limit_;       ///< per sheet
+  std::vector<std::uint8_t> limit_;       ///< (6 cells), on both sides of a face
 };
 
 /// Where a cell lies in its block.
 struct Placed {
   Index3 at{0, 0, 0};
-  Orientation axes;  ///< of the cell's local axes -> of the block's
+  /// Of the block's axes, counted from 1, the ones that the cell's local axes run along, or (negative) against.
+  std::array<std::int8_t, 3> along{1, 2, 3};
+
+  [[nodiscard]] Orientation axes() const {
+    Orientation out;
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.axis[a] = std::abs(along[a]) - 1;
+      out.sign[a] = along[a] > 0 ? 1 : -1;
+    }
+    return out;
+  }
+  void set(Orientation const& axes) {
+    for (std::size_t a = 0; a < 3; ++a) along[a] = std::int8_t(axes.sign[a] * (axes.axis[a] + 1));
+  }
 };
 
 /// A mesh of quadrilaterals with a layer of hexahedra on it, as readers do with blocks in the plane: node n has node
@@ -195,7 +221,8 @@ Mesh with_layer(Mesh const& flat) {
 class Search {
  public:
   Search(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology, Mesh const& named)
-      : mesh_(mesh),
+      : host_(host),
+        mesh_(mesh),
         named_(named),
         links_(host, mesh, topology),
         sheets_(host, links_, mesh.n_elements()),
@@ -238,15 +265,17 @@ class Search {
   /// Places what lies behind the sides of a cell. Returns the side behind which a cell has another place already.
   std::optional<CellSide> visit_neighbours(std::vector<Index32>& cells, Index32 e) {
     Placed const own = placed_[e];
+    Orientation const axes = own.axes();
     int const block = block_[e];
     for (int side = 0; side < 6; ++side) {
       CellSide const s = cell_side(e, side);
       if (links_.behind(s) < 0 || sheets_.is_limit(s)) continue;
       HexLink const link = links_.link(s);
       int const axis = side_axis[side];
-      Placed there{own.at, link.turn->axes.inverse().then(own.axes)};
+      Placed there{own.at, {}};
+      there.set(link.turn->axes.inverse().then(axes));
       int const outwards = side_end[side] == 1 ? 1 : -1;
-      there.at[own.axes.axis[axis]] += outwards * own.axes.sign[axis];
+      there.at[axes.axis[axis]] += outwards * axes.sign[axis];
       if (block_[link.cell] == none) {
         block_[link.cell] = block;
         placed_[link.cell] = there;
@@ -254,7 +283,7 @@ class Search {
         continue;
       }
       Placed const& known = placed_[link.cell];
-      if (block_[link.cell] != block || known.at != there.at || !(known.axes == there.axes)) return s;
+      if (block_[link.cell] != block || known.at != there.at || known.along != there.along) return s;
     }
     return {};
   }
@@ -278,31 +307,55 @@ class Search {
     auto const first_node = out.node.size(), first_cell = out.element.size();
     out.node.resize(first_node + std::size_t(zone.size()), -1);
     out.element.resize(first_cell + cells.size(), -1);
-    bool one = true;
-    for (Index32 const e : cells) {
-      Index3 const& p = placed_[e].at;
-      out.element[first_cell + std::size_t(p[0] + Index(extent[0] - 1) * (p[1] + Index(extent[1] - 1) * p[2]))] = e;
+    auto const cell_at = [&](Index3 const& p) -> Index32& {
+      return out.element[first_cell + std::size_t(p[0] + Index(extent[0] - 1) * (p[1] + Index(extent[1] - 1) * p[2]))];
+    };
+    for (Index32 const e : cells) cell_at(placed_[e].at) = e;
+    std::atomic<bool> torn = false;
+    detail::for_all(host_, "gridmorph::nodes_of_block", zone.size(), [&](Index local) {
+      Index const n = zone.first_node + local;
+      Index3 const p = zone.index(n);
+      Index32 node = -1;
       for (int c = 0; c < 8; ++c) {
-        Index32& node = out.node[zone.node(place_of(e, c))];
-        Index32 const own = links_.node(e, c);
-        one = one && (node < 0 || node == own);
+        Index3 const at{p[0] - (c & 1), p[1] - ((c >> 1) & 1), p[2] - (c >> 2)};
+        if (!is_cell(at, extent)) continue;
+        Index32 const e = cell_at(at), own = e < 0 ? -1 : links_.node(e, corner_at(placed_[e], c));
+        if (own < 0 || (node >= 0 && node != own)) torn = true;
         node = own;
       }
-    }
-    if (one) return {};
+      out.node[n] = node;
+    });
+    if (!torn) return {};
     out.node.resize(first_node);
     out.element.resize(first_cell);
     mesh.zones.pop_back();
     return "lies among others that are torn along a surface inside of them";
   }
 
+  static bool is_cell(Index3 const& at, Index3 const& extent) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (at[a] < 0 || at[a] >= extent[a] - 1) return false;
+    return true;
+  }
+
+  /// The corner of a cell that is at bit 0, 1, 2 of `place` along the axes of its block.
+  static int corner_at(Placed const& placed, int place) {
+    Orientation const axes = placed.axes();
+    int local = 0;
+    for (int a = 0; a < 3; ++a) {
+      int const up = (place >> axes.axis[a]) & 1;
+      local |= (axes.sign[a] > 0 ? up : 1 - up) << a;
+    }
+    return corner_place[local];
+  }
+
   /// The indices of a corner in the block of its cell.
   [[nodiscard]] Index3 place_of(Index32 e, int corner) const {
-    Placed const& placed = placed_[e];
-    Index3 out = placed.at;
+    Orientation const axes = placed_[e].axes();
+    Index3 out = placed_[e].at;
     for (std::size_t a = 0; a < 3; ++a) {
       int const up = (corner_place[corner] >> a) & 1;
-      out[placed.axes.axis[a]] += placed.axes.sign[a] > 0 ? up : 1 - up;
+      out[axes.axis[a]] += axes.sign[a] > 0 ? up : 1 - up;
     }
     return out;
   }
@@ -318,8 +371,7 @@ class Search {
 
   /// Where all cells are.
   [[nodiscard]] detail::CellPlaces places() const {
-    return {[this](Index32 e) { return block_[e]; },
-            [this](Index32 e) -> Orientation const& { return placed_[e].axes; },
+    return {[this](Index32 e) { return block_[e]; }, [this](Index32 e) { return placed_[e].axes(); },
             [this](Index32 e) -> Index3 const& { return placed_[e].at; },
             [this](Index32 e, int c) { return place_of(e, c); }};
   }
@@ -331,16 +383,19 @@ class Search {
     mesh.families = named_.families;
     mesh.notes = named_.notes;
     mesh.coordinates = Coordinates(mesh.n_nodes());
-    for (std::size_t n = 0; n < out.node.size(); ++n) mesh.coordinates.set(Index(n), mesh_.coordinates[out.node[n]]);
+    detail::for_all(host_, "gridmorph::coordinates_of_blocks", mesh.n_nodes(),
+                    [&](Index n) { mesh.coordinates.set(n, mesh_.coordinates[out.node[n]]); });
     // Of a node's copies in the blocks the first leads back, in the plane that of the first plane.
     std::vector<Index32> of_representative(mesh_.n_nodes(), -1);
     for (std::size_t n = out.node.size(); n-- > 0;) of_representative[out.node[n]] = Index32(n);
-    for (Index32 n = 0; n < named_.n_nodes(); ++n) out.in_blocks.push_back(of_representative[links_.representative(n)]);
+    out.in_blocks.resize(named_.n_nodes());
+    for (Index32 n = 0; n < named_.n_nodes(); ++n) out.in_blocks[n] = of_representative[links_.representative(n)];
     bool const single =
         std::all_of(named_.zones.begin(), named_.zones.end(), [](Zone const& zone) { return zone.single_precision; });
     for (Zone& zone : mesh.zones) zone.single_precision = single;
   }
 
+  HostInstance host_;
   Mesh const &mesh_, &named_;
   HexLinks links_;
   Sheets sheets_;

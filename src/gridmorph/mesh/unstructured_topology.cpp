@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 
 namespace gridmorph {
 
@@ -65,47 +66,67 @@ bool same_side(Mesh const& mesh, KeyedSide const& a, KeyedSide const& b) {
   return same_set(side_nodes(mesh, a.element, a.side, room_a), side_nodes(mesh, b.element, b.side, room_b));
 }
 
-/// Corner nodes of a side of an element with tables, ascending, each once. Returns how many there are.
-inline int sort_side(ElementType type, Index32 const* node, int side, std::array<Index32, max_face_corners>& sorted) {
-  int n = 0;
-  for (int c = 0; c < n_face_corners(type, side); ++c) {
-    Index32 const corner = node[face_corner(type, side, c)];
-    int at = n;
+/// Sorts the corner nodes of a side, each once. Returns how many there are.
+template <std::size_t n>
+int sort_side(std::array<Index32, n> const& corners, std::array<Index32, max_face_corners>& sorted) {
+  int count = 0;
+  for (Index32 const corner : corners) {
+    int at = count;
     while (at > 0 && sorted[at - 1] > corner) --at;
     if (at > 0 && sorted[at - 1] == corner) continue;
-    for (int k = n; k > at; --k) sorted[k] = sorted[k - 1];
+    for (int k = count; k > at; --k) sorted[k] = sorted[k - 1];
     sorted[at] = corner;
-    ++n;
+    ++count;
   }
-  return n;
+  return count;
 }
 
-/// The sides of a tetrahedron that names no node twice, sorted without branches.
+/// Calls put(side) for the sides of an element whose smallest node is this. Tables are looked up by the compiler: an
+/// element comes once for each of its nodes.
+template <ElementType type, class Put>
+void for_each_side_of(Mesh const& mesh, Index32 e, Index32 smallest, Put const& put) {
+  Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[e];
+  auto const side = [&]<int s>() {
+    constexpr int n = n_face_corners(type, s);
+    auto const corners = [&]<int... c>(std::integer_sequence<int, c...>) {
+      return std::array<Index32, n>{node[face_corner(type, s, c)]...};
+    }
+    (std::make_integer_sequence<int, n>());
+    Index32 least = corners[0];
+    for (Index32 const corner : corners) least = std::min(least, corner);
+    if (least != smallest) return;
+    std::array<Index32, max_face_corners> sorted{-1, -1, -1, -1};
+    if (int const count = sort_side(corners, sorted); count >= mesh.dimension)
+      put(KeyedSide{{sorted[1], sorted[2], sorted[3]}, e, Index32(s), Index32(count)});
+  };
+  [&]<int... s>(std::integer_sequence<int, s...>) { (side.template operator()<s>(), ...); }
+  (std::make_integer_sequence<int, n_faces(type)>());
+}
+
 template <class Put>
-void put_tetrahedron(Index32 const* node, Index32 e, Put const& put) {
-  for (int s = 0; s < 4; ++s) {
-    Index32 const a = node[face_corner(ElementType::tetrahedron, s, 0)],
-                  b = node[face_corner(ElementType::tetrahedron, s, 1)],
-                  c = node[face_corner(ElementType::tetrahedron, s, 2)];
-    Index32 const low = std::min(a, b), high = std::max(a, b);
-    put(std::min(low, c), KeyedSide{{std::max(low, std::min(high, c)), std::max(high, c), -1}, e, s, 3});
-  }
-}
-
-bool names_twice(Index32 const* n) {
-  return n[0] == n[1] || n[0] == n[2] || n[0] == n[3] || n[1] == n[2] || n[1] == n[3] || n[2] == n[3];
-}
-
-template <class Put>
-void put_polyhedron(Mesh const& mesh, Index e, Put const& put) {
-  std::array<Index32, max_face_corners> room, smallest;
+void for_each_side_of_polyhedron(Mesh const& mesh, Index32 e, Index32 smallest, Put const& put) {
+  std::array<Index32, max_face_corners> room{}, sorted{};
   for (int s = 0; s < n_sides(mesh, e); ++s) {
     auto const nodes = side_nodes(mesh, e, s, room);
-    if (int(nodes.size()) < mesh.dimension) continue;
-    smallest.fill(-1);
-    std::partial_sort_copy(nodes.begin(), nodes.end(), smallest.begin(),
-                           smallest.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
-    put(smallest[0], KeyedSide{{smallest[1], smallest[2], smallest[3]}, Index32(e), Index32(s), Index32(nodes.size())});
+    if (int(nodes.size()) < mesh.dimension || *std::min_element(nodes.begin(), nodes.end()) != smallest) continue;
+    sorted.fill(-1);
+    std::partial_sort_copy(nodes.begin(), nodes.end(), sorted.begin(),
+                           sorted.begin() + std::min<std::ptrdiff_t>(max_face_corners, std::ssize(nodes)));
+    put(KeyedSide{{sorted[1], sorted[2], sorted[3]}, e, Index32(s), Index32(nodes.size())});
+  }
+}
+
+template <class Put>
+void for_each_side_from(Mesh const& mesh, Index32 e, Index32 smallest, Put const& put) {
+  using enum ElementType;
+  switch (mesh.elements.type[e]) {
+    case triangle: return for_each_side_of<triangle>(mesh, e, smallest, put);
+    case quadrilateral: return for_each_side_of<quadrilateral>(mesh, e, smallest, put);
+    case tetrahedron: return for_each_side_of<tetrahedron>(mesh, e, smallest, put);
+    case pyramid: return for_each_side_of<pyramid>(mesh, e, smallest, put);
+    case prism: return for_each_side_of<prism>(mesh, e, smallest, put);
+    case hexahedron: return for_each_side_of<hexahedron>(mesh, e, smallest, put);
+    case polyhedron: return for_each_side_of_polyhedron(mesh, e, smallest, put);
   }
 }
 
@@ -120,9 +141,10 @@ Index32 behind(Mesh const& mesh, KeyedSide const& own, std::span<KeyedSide const
   return found;
 }
 
-/// take(sides that are alike, in their order) for at most `most` sides.
+/// take(sides that are alike, in their order), by a search for the other one of a pair, which around most nodes is
+/// quicker than a sort, for at most `most` sides.
 template <std::size_t most, class Take>
-void for_each_alike(std::span<KeyedSide const> sides, Take const& take) {
+void for_each_alike_of_few(std::span<KeyedSide const> sides, Take const& take) {
   std::array<std::uint64_t, most> key;
   for (std::size_t k = 0; k < sides.size(); ++k)
     key[k] = std::uint64_t(std::uint32_t(sides[k].nodes[0])) << 32 | std::uint32_t(sides[k].nodes[1]);
@@ -138,6 +160,18 @@ void for_each_alike(std::span<KeyedSide const> sides, Take const& take) {
         alike[n++] = sides[m];
       }
     take({alike.data(), n});
+  }
+}
+
+template <class Take>
+void for_each_alike(std::span<KeyedSide> sides, Take const& take) {
+  constexpr std::size_t few = 64;
+  if (sides.size() <= few) return for_each_alike_of_few<few>(sides, take);
+  std::sort(sides.begin(), sides.end());
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    auto const end = std::find_if_not(begin, sides.end(), [&](KeyedSide const& s) { return s.alike(*begin); });
+    take({begin, end});
+    begin = end;
   }
 }
 
@@ -239,37 +273,24 @@ CsrGraph elements_of_nodes(HostInstance const& host, Mesh const& mesh) {
                 [&](Index e) { return mesh.elements.corners(e); });
 }
 
-ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
+ElementSides element_sides(HostInstance const& host, Mesh const& mesh, CsrGraph const& around) {
   ElementSides out;
   Index const n = mesh.n_elements();
   out.first.resize(n + 1, 0);
   for (Index e = 0; e < n; ++e) out.first[e + 1] = out.first[e] + n_sides(mesh, e);
   out.neighbour.resize(out.first.back(), ElementSides::collapsed);
-  detail::IndexBuckets<KeyedSide> const buckets(
-      host, "gridmorph::element_sides", n, mesh.n_nodes(), [&](Index e, auto const& put) {
-        ElementType const type = mesh.elements.type[e];
-        if (type == ElementType::polyhedron) return put_polyhedron(mesh, e, put);
-        Index32 const* const node = mesh.elements.nodes.item.data() + mesh.elements.nodes.first[e];
-        if (type == ElementType::tetrahedron && !names_twice(node)) return put_tetrahedron(node, Index32(e), put);
-        for (int s = 0; s < n_faces(type); ++s) {
-          std::array<Index32, max_face_corners> sorted{-1, -1, -1, -1};
-          int const corners = sort_side(type, node, s, sorted);
-          if (corners >= mesh.dimension)
-            put(sorted[0], KeyedSide{{sorted[1], sorted[2], sorted[3]}, Index32(e), Index32(s), Index32(corners)});
-        }
-      });
   auto const take = [&](std::span<KeyedSide const> alike) {
     for (KeyedSide const& own : alike) out.neighbour[out.first[own.element] + own.side] = behind(mesh, own, alike);
   };
-  buckets.for_each_key([&](Index32, Index, std::span<KeyedSide> sides) {
-    // Around most nodes a search for the other one of a pair is quicker than a sort.
-    constexpr std::size_t few = 64;
-    if (sides.size() <= few) return for_each_alike<few>(sides, take);
-    std::sort(sides.begin(), sides.end());
-    for (auto begin = sides.begin(); begin != sides.end();) {
-      auto const end = std::find_if_not(begin, sides.end(), [&](KeyedSide const& s) { return s.alike(*begin); });
-      take({begin, end});
-      begin = end;
+  constexpr Index of_part = 1024;
+  Index const n_parts = (mesh.n_nodes() + of_part - 1) / of_part;
+  detail::for_all_parts(host, "gridmorph::element_sides", n_parts, [&](Index part) {
+    std::vector<KeyedSide> sides;
+    for (Index node = part * of_part; node < std::min(mesh.n_nodes(), (part + 1) * of_part); ++node) {
+      sides.clear();
+      for (Index32 const e : around[node])
+        for_each_side_from(mesh, e, Index32(node), [&](KeyedSide const& side) { sides.push_back(side); });
+      for_each_alike(sides, take);
     }
   });
   return out;
@@ -278,7 +299,7 @@ ElementSides element_sides(HostInstance const& host, Mesh const& mesh) {
 UnstructuredTopology make_topology(HostInstance const& host, Mesh const& mesh) {
   UnstructuredTopology out;
   out.elements_of_nodes = elements_of_nodes(host, mesh);
-  out.sides = element_sides(host, mesh);
+  out.sides = element_sides(host, mesh, out.elements_of_nodes);
   out.crowded_sides = std::count(out.sides.neighbour.begin(), out.sides.neighbour.end(), ElementSides::crowded);
   auto const find_boundary = [&] {
     out.boundary = boundary_faces(mesh, out.sides);

@@ -29,9 +29,12 @@ struct ElementSides {
   }
 };
 
-/// Two elements are neighbours when a side of one has the corner nodes of a side of the other.
-ElementSides element_sides(HostInstance const& host, Mesh const& mesh);
-inline ElementSides element_sides(Mesh const& mesh) { return element_sides(HostInstance(), mesh); }
+/// Two elements are neighbours when a side of one has the corner nodes of a side of the other: looked for around the
+/// smallest node of each side, among elements_of_nodes().
+ElementSides element_sides(HostInstance const& host, Mesh const& mesh, CsrGraph const& elements_of_nodes);
+inline ElementSides element_sides(Mesh const& mesh) {
+  return element_sides(HostInstance(), mesh, elements_of_nodes(mesh));
+}
 
 /// Sides with nothing behind them, in element order; normals point out of the mesh.
 struct BoundaryFaces {

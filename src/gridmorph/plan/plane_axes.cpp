@@ -31,6 +31,11 @@ Mat3 along_axes(std::array<int, 3> const& axes, Mat3 const& m) {
   return out;
 }
 
+kernels::RowFrame along_axes(std::array<int, 3> const& axes, kernels::RowFrame const& row) {
+  auto const turned = [&](Vec3 const& v) { return along_axes(axes, v); };
+  return {turned(row.origin), turned(row.direction), turned(row.span), turned(row.pitch), row.is_linear};
+}
+
 std::vector<SlipSurface> along_axes(std::array<int, 3> const& axes, std::vector<SlipSurface> surfaces) {
   // Lines have planes, circles and axial positions to slide on, and no facets.
   for (SlipSurface& s : surfaces) {

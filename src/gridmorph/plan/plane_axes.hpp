@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gridmorph/geometry/slip_surface.hpp>
+#include <gridmorph/kernels/row_frame.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
 
 #include <array>
@@ -17,6 +18,7 @@ std::array<int, 3> plane_axes(Mesh const& mesh);
 Vec3 along_axes(std::array<int, 3> const& axes, Vec3 const& v);
 Vec3 back_from_axes(std::array<int, 3> const& axes, Vec3 const& v);
 Mat3 along_axes(std::array<int, 3> const& axes, Mat3 const& m);
+kernels::RowFrame along_axes(std::array<int, 3> const& axes, kernels::RowFrame const& row);
 std::vector<SlipSurface> along_axes(std::array<int, 3> const& axes, std::vector<SlipSurface> surfaces);
 /// Coordinates whose components are those of the mesh in this order. They share its arrays.
 Coordinates along_axes(std::array<int, 3> const& axes, Coordinates const& x);

@@ -37,9 +37,13 @@ struct IndexedMesh::State {
 };
 
 IndexedMesh::IndexedMesh(HostInstance const& host, Mesh mesh)
-    : state_(std::make_shared<State const>(host, std::move(mesh))) {}
+    : state_(std::make_shared<State>(host, std::move(mesh))) {}
 
 Mesh const& IndexedMesh::mesh() const { return state_->mesh; }
+Mesh IndexedMesh::take_mesh() && {
+  std::shared_ptr<State> const state = std::move(state_);
+  return state.use_count() == 1 ? std::move(state->mesh) : state->mesh;
+}
 bool IndexedMesh::is_structured() const { return state_->structured; }
 Index IndexedMesh::n_cells() const { return is_structured() ? mesh().n_cells() : mesh().n_elements(); }
 UnstructuredTopology const& IndexedMesh::topology() const { return state_->topology; }

@@ -23,6 +23,8 @@ class IndexedMesh {
   explicit IndexedMesh(Mesh mesh) : IndexedMesh(HostInstance(), std::move(mesh)) {}
 
   [[nodiscard]] Mesh const& mesh() const;
+  /// The mesh alone, and the rest goes; where other copies have it too, a copy.
+  [[nodiscard]] Mesh take_mesh() &&;
   [[nodiscard]] bool is_structured() const;
   [[nodiscard]] Index n_nodes() const { return mesh().n_nodes(); }
   /// The number of cells of blocks, or of elements.
@@ -42,7 +44,7 @@ class IndexedMesh {
 
  private:
   struct State;
-  std::shared_ptr<State const> state_;
+  std::shared_ptr<State> state_;
 };
 
 /// Looks at every cell of these zones, all where none are named, on the default host instance: certify() of

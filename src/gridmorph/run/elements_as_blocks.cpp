@@ -51,43 +51,46 @@ bool may_have_blocks(Mesh const& elements) {
          std::all_of(type.begin(), type.end(), [&](ElementType t) { return t == wanted; });
 }
 
-ElementsAsBlocks::ElementsAsBlocks(IndexedMesh const& elements) : elements_(elements.mesh()) {
+ElementsAsBlocks::ElementsAsBlocks(IndexedMesh&& elements, Lines lines) {
+  Mesh const& mesh = elements.mesh();
   if (int const inner = inner_patch(elements); inner >= 0) {
-    why_none_ =
-        fmt::format("{}: patch '{}' has faces inside the mesh", elements_.source, elements_.patches[inner].name);
+    why_none_ = fmt::format("{}: patch '{}' has faces inside the mesh", mesh.source, mesh.patches[inner].name);
     return;
   }
-  FoundBlocks found = find_blocks(HostInstance(), elements_, elements.topology(), elements.face_patches());
+  FoundBlocks found = find_blocks(HostInstance(), mesh, elements.topology(), elements.face_patches());
   if (found.n_left > 0) {
-    why_none_ = fmt::format("{}: {} of {} elements lie in no block of grid lines; the first: {}", elements_.source,
-                            found.n_left, elements_.n_elements(), found.why_left);
+    why_none_ = fmt::format("{}: {} of {} elements lie in no block of grid lines; the first: {}", mesh.source,
+                            found.n_left, mesh.n_elements(), found.why_left);
     return;
   }
   // Connections pair nodes that lie within 1e-6 of the mesh size; what blocks ask of theirs is a hundredth of that.
   Problems apart;
   (void)connect(found.mesh, {}, apart);
   if (!apart.empty()) {
-    why_none_ = elements_.source + ": periodic sides lie farther apart than those of blocks may, 1e-8 of the mesh size";
+    why_none_ = mesh.source + ": periodic sides lie farther apart than those of blocks may, 1e-8 of the mesh size";
+    return;
+  }
+  if (lines == Lines::long_ones && !has_long_lines(found.mesh)) {
+    why_none_ = mesh.source + ": limits of blocks run through nearly every row of cells";
     return;
   }
   blocks_ = std::move(found.mesh);
-  long_lines_ = has_long_lines(blocks_);
-  blocks_.notes.push_back(fmt::format("{}: {} block{} found in {} {} (`gridmorph blocks` writes them)",
-                                      elements_.source, blocks_.zones.size(), blocks_.zones.size() == 1 ? "" : "s",
-                                      elements_.n_elements(),
-                                      elements_.dimension == 2 ? "quadrilaterals" : "hexahedra"));
+  blocks_.notes.push_back(fmt::format("{}: {} block{} found in {} {} (`gridmorph blocks` writes them)", mesh.source,
+                                      blocks_.zones.size(), blocks_.zones.size() == 1 ? "" : "s", mesh.n_elements(),
+                                      mesh.dimension == 2 ? "quadrilaterals" : "hexahedra"));
   element_ = std::move(found.element);
   Index first_cell = 0;
   for (Zone const& block : blocks_.zones) {
-    zone_of_block_.push_back(elements_.zone_of_element(element_[first_cell]));
+    zone_of_block_.push_back(mesh.zone_of_element(element_[first_cell]));
     first_cell += Index(block.extent[0] - 1) * (block.extent[1] - 1) * (block.extent[2] - 1);
   }
   block_node_ = std::move(found.in_blocks);
   node_ = std::move(found.node);
-  if (elements_.dimension == 2) {
-    Vec3 const up = plane_normal(elements_);
+  if (mesh.dimension == 2) {
+    Vec3 const up = plane_normal(mesh);
     across_ = std::fabs(up.x) > 0.5 ? 0 : std::fabs(up.y) > 0.5 ? 1 : 2;
   }
+  elements_ = std::move(elements).take_mesh();
 }
 
 Coordinates ElementsAsBlocks::coordinates(Coordinates const& of_blocks) const {

@@ -4,6 +4,7 @@
 #include <gridmorph/io/mesh_io.hpp>
 #include <gridmorph/quality/indexed_mesh.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,16 @@ bool may_have_blocks(Mesh const& elements);
 /// The elements as the file has them, and the way from their blocks back to them.
 class ElementsAsBlocks {
  public:
-  /// The mesh is copied, so that what belongs to it as one of elements can go. Cost: find_blocks().
-  explicit ElementsAsBlocks(IndexedMesh const& elements);
+  /// Which grid lines will do. In a mesh that was paved, limits of blocks run through nearly every row of cells, and
+  /// its elements are better off as elements when it is morphed.
+  enum class Lines : std::uint8_t { any, long_ones };
+
+  /// Takes the mesh out of `elements`, and what belongs to it as one of elements goes; where they are no blocks it
+  /// leaves them as they are. Cost: find_blocks().
+  ElementsAsBlocks(IndexedMesh&& elements, Lines lines);
 
   /// Why the elements are no blocks: which lies in none; empty where all lie in one.
   [[nodiscard]] std::string const& why_none() const { return why_none_; }
-  /// Whether grid lines reach far enough for blocks to lead a morph: in a mesh that was paved, limits of blocks run
-  /// through nearly every row of cells, and elements of such a mesh are better off as elements.
-  [[nodiscard]] bool have_long_lines() const { return long_lines_; }
 
   /// The blocks, once; a note of theirs says how many there are.
   [[nodiscard]] Mesh take_blocks() { return std::move(blocks_); }
@@ -38,7 +41,6 @@ class ElementsAsBlocks {
  private:
   Mesh elements_, blocks_;
   std::string why_none_;
-  bool long_lines_ = false;
   int across_ = -1;                  ///< the component of coordinates that meshes in the plane keep
   std::vector<Index32> node_;        ///< (blocks' nodes) the node of the elements, of those that are one the first
   std::vector<Index32> block_node_;  ///< (elements' nodes) a node of the blocks that lies there; -1: none

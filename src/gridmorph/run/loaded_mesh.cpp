@@ -227,15 +227,10 @@ LoadedMesh::LoadedMesh(std::filesystem::path const& path, std::optional<std::fil
 
 void LoadedMesh::take_blocks() {
   if (!may_have_blocks(mesh()) || !problems_.empty()) return;
-  auto found = std::make_shared<ElementsAsBlocks>(indexed_);
-  if (found->why_none().empty() && found->have_long_lines()) {
-    *this = LoadedMesh(found->take_blocks());
-    as_elements_ = std::move(found);
-    return;
-  }
-  remark((found->why_none().empty() ? mesh().source + ": limits of blocks run through nearly every row of cells"
-                                    : found->why_none()) +
-         "; they are morphed as elements");
+  auto found = std::make_shared<ElementsAsBlocks>(std::move(indexed_), ElementsAsBlocks::Lines::long_ones);
+  if (!found->why_none().empty()) return remark(found->why_none() + "; they are morphed as elements");
+  *this = LoadedMesh(found->take_blocks());
+  as_elements_ = std::move(found);
 }
 
 LoadedMesh::LoadedMesh(Mesh as_read)

@@ -30,6 +30,14 @@ void refuse_free_sides(Mesh const& sector, PassageLinks const& links, WheelRows 
   problems.throw_if_any<MotionError>();
 }
 
+/// Whether passages do the same. What sides do that one shares with another blade's is not what all of either does.
+bool are_alike(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
+  double const largest = std::max(largest_norm(a), largest_norm(b));
+  constexpr double alike = 1e-9;
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [&](Vec3 const& p, Vec3 const& q) { return distance(p, q) <= alike * largest; });
+}
+
 }  // namespace
 
 WheelMotion::WheelMotion(IndexedMesh sector, PassageLinks const& links, WheelRows const& rows,
@@ -123,19 +131,20 @@ std::optional<std::vector<Vec3>> WheelMotion::largest_of(Asked const& asked, Pla
     if (passages_.first_alike(p) < p) continue;
     auto displacement = passages_.boundary(p);
     double const now = largest_norm(displacement);
-    // What sides do that one passage shares with another blade's is not what all of either does.
-    constexpr double alike = 1e-9;
     if (first.empty()) first = displacement;
-    for (std::size_t k = 0; k < first.size(); ++k)
-      if (!(distance(first[k], displacement[k]) <= alike * std::max(now, largest))) options.elements.with_sides = false;
+    if (!are_alike(first, displacement)) options.elements.with_sides = false;
     if (now <= largest) continue;
     largest = now;
     most = std::move(displacement);
   }
   if (used_.size() == 1 && asked.times.steps == 0) return most;
-  if (used_.size() > 1 && asked.times.steps > 0) options.elements.with_sides = false;
-  for (int step = 0; step < asked.times.steps; ++step)
-    for (auto const& values : values_of(asked.times.motions(step))) largest = std::max(largest, largest_norm(values));
+  for (int step = 0; step < asked.times.steps; ++step) {
+    auto const values = values_of(asked.times.motions(step));
+    for (int const m : used_) {
+      largest = std::max(largest, largest_norm(values[m]));
+      if (!are_alike(values[used_.front()], values[m])) options.elements.with_sides = false;
+    }
+  }
   options.elements.motion = largest;  // what turns leave of it differs from blade to blade
   if (most) options.elements.shape = std::move(*most);
   return {};

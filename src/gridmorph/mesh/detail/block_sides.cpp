@@ -60,7 +60,7 @@ class Sides {
 
  private:
   void look_around(Index32 e) {
-    Orientation const& axes = places_.axes(e);
+    Orientation const axes = places_.axes(e);
     Index3 const& p = places_.at(e);
     Index3 const& extent = blocks_.zones[places_.block(e)].extent;
     for (int s = 0; s < 6; ++s) {

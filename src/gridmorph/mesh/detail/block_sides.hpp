@@ -10,7 +10,7 @@ namespace gridmorph::detail {
 /// Where the cells of a mesh lie in its blocks.
 struct CellPlaces {
   std::function<int(Index32 cell)> block;
-  std::function<Orientation const&(Index32 cell)> axes;  ///< of the cell's -> of the block's
+  std::function<Orientation(Index32 cell)> axes;  ///< of the cell's -> of the block's
   std::function<Index3 const&(Index32 cell)> at;
   std::function<Index3(Index32 cell, int corner)> node;
 };

@@ -43,13 +43,11 @@ std::array<HexTurn, 288> all_turns() {
 std::array<HexTurn, 288> const side_turns = all_turns();
 
 HexLinks::HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology)
-    : mesh_(mesh), topology_(topology), representative_(coincident_nodes(mesh)) {
-  auto const n_sides = std::size_t(6 * mesh.n_elements());
-  face_.assign(n_sides, -1);
-  for (Index f = 0; f < topology.boundary.size(); ++f) {
-    Index32 const e = topology.boundary.element[f];
-    if (is_hexahedron(e)) face_[cell_side(e, topology.boundary.side[f])] = Index32(f);
-  }
+    : mesh_(mesh),
+      topology_(topology),
+      only_hexahedra_(std::all_of(mesh.elements.type.begin(), mesh.elements.type.end(),
+                                  [](ElementType type) { return type == ElementType::hexahedron; })),
+      representative_(coincident_nodes(mesh)) {
   for (Connection const& c : mesh.connections) {
     auto& there = pairs_.emplace_back();
     for (std::size_t n = 0; n < c.nodes.size(); ++n)
@@ -60,43 +58,54 @@ HexLinks::HexLinks(HostInstance const& host, Mesh const& mesh, UnstructuredTopol
     std::sort(back.begin(), back.end());
     pairs_.push_back(std::move(back));
   }
-  partner_.assign(n_sides, -1);
-  turn_.assign(n_sides, -1);
+  way_.assign(std::size_t(6 * mesh.n_elements()), -1);
   for_all(host, "gridmorph::hex_links", mesh.n_elements(), [&](Index e) {
     if (!is_hexahedron(Index32(e))) return;
     for (int side = 0; side < 6; ++side) {
-      CellSide const s = cell_side(Index32(e), side), other = find_partner(s);
-      if (other < 0) continue;
-      int const turn = turn_between(s, other, [](Index32 a, Index32 b) { return a == b; });
-      if (turn < 0) continue;
-      partner_[s] = other;
-      turn_[s] = std::int8_t(turn);
+      CellSide const s = cell_side(Index32(e), side);
+      way_[s] = std::int8_t(find_way(s));
     }
   });
 }
 
-CellSide HexLinks::find_partner(CellSide s) const {
+Index32 HexLinks::boundary_face(CellSide s) const {
+  BoundaryFaces const& boundary = topology_.boundary;
+  Index32 const e = s / 6;
+  auto f =
+      std::size_t(std::lower_bound(boundary.element.begin(), boundary.element.end(), e) - boundary.element.begin());
+  for (; f < boundary.element.size() && boundary.element[f] == e; ++f)
+    if (boundary.side[f] == s % 6) return Index32(f);
+  return -1;
+}
+
+Index32 HexLinks::cell_across(CellSide s) const {
+  return topology_.boundary.element[topology_.boundary.across[boundary_face(s)]];
+}
+
+int HexLinks::find_way(CellSide s) const {
+  auto const is_same = [](Index32 a, Index32 b) { return a == b; };
   Index32 const e = s / 6;
   Index32 const other = topology_.sides.of(e)[s % 6];
   if (other >= 0) {
     if (!is_hexahedron(other)) return -1;
     auto const back = topology_.sides.of(other);
-    for (int side = 0; side < 6; ++side)  // two cells may have two sides in common
-      if (back[side] == e && turn_between(s, cell_side(other, side), [](Index32 a, Index32 b) { return a == b; }) >= 0)
-        return cell_side(other, side);
+    for (int side = 0; side < 6; ++side) {  // two cells may have two sides in common
+      if (back[side] != e) continue;
+      if (int const way = way_between(s, cell_side(other, side), is_same); way >= 0) return way;
+    }
     return -1;
   }
-  Index32 const f = face_[s];
+  Index32 const f = other == ElementSides::boundary ? boundary_face(s) : -1;
   Index32 const across = f < 0 ? -1 : topology_.boundary.across[f];
   if (across < 0) return -1;
   auto const c = std::size_t(topology_.boundary.connection[f] / 2);
   Index32 const there = topology_.boundary.element[across];
   if (mesh_.connections[c].periodic || !is_hexahedron(there)) return -1;
-  return cell_side(there, topology_.boundary.side[across]);
+  return way_between(s, cell_side(there, topology_.boundary.side[across]), is_same);
 }
 
 template <class Same>
-int HexLinks::turn_between(CellSide from, CellSide to, Same const& same) const {
+int HexLinks::way_between(CellSide from, CellSide to, Same const& same) const {
   auto const own = corners_of_side(from % 6), other = corners_of_side(to % 6);
   // Seen from the two cells a side runs the other way round, unless one of them is inside out: these come last.
   for (int const reversed : {1, 0})
@@ -106,13 +115,13 @@ int HexLinks::turn_between(CellSide from, CellSide to, Same const& same) const {
         int const at = reversed ? (start + 4 - k) % 4 : (start + k) % 4;
         all = same(node(from / 6, own[k]), node(to / 6, other[at]));
       }
-      if (all) return 2 * start + reversed;
+      if (all) return n_ways * (to % 6) + 2 * start + reversed;
     }
   return -1;
 }
 
 std::optional<HexLink> HexLinks::periodic(CellSide s) const {
-  Index32 const f = face_[s];
+  Index32 const f = boundary_face(s);
   if (f < 0) return {};
   Index32 const across = topology_.boundary.across[f], c = topology_.boundary.connection[f];
   if (across < 0 || !mesh_.connections[c / 2].periodic) return {};
@@ -120,10 +129,10 @@ std::optional<HexLink> HexLinks::periodic(CellSide s) const {
   if (!is_hexahedron(there)) return {};
   auto const& pairs = pairs_[c];
   CellSide const to = cell_side(there, topology_.boundary.side[across]);
-  int const turn = turn_between(
+  int const way = way_between(
       s, to, [&](Index32 a, Index32 b) { return std::binary_search(pairs.begin(), pairs.end(), std::pair(a, b)); });
-  if (turn < 0) return {};
-  return made(s, to, turn);
+  if (way < 0) return {};
+  return made(s, there, way);
 }
 
 }  // namespace gridmorph::detail

@@ -35,7 +35,7 @@ struct HexTurn {
   std::array<std::int8_t, 8> corner{};  ///< of the side's corners: theirs in that cell
 };
 
-/// How every side meets every other in all eight ways: 48 * side + 8 * other side + turn.
+/// How every side meets every other in all eight ways: 48 * side + 8 * other side + way.
 extern std::array<HexTurn, 288> const side_turns;
 
 /// What lies across a side.
@@ -56,35 +56,46 @@ class HexLinks {
   [[nodiscard]] Index32 representative(Index32 node) const { return representative_[node]; }
   /// That of corner c.
   [[nodiscard]] Index32 node(Index32 cell, int corner) const {
-    return representative(mesh_.elements.nodes[cell][corner]);
+    auto const& nodes = mesh_.elements.nodes;
+    return representative(only_hexahedra_ ? nodes.item[8 * Index(cell) + corner] : nodes[cell][corner]);
   }
   /// What lies behind a side inside the mesh; -1: nothing.
-  [[nodiscard]] CellSide behind(CellSide s) const { return partner_[s]; }
+  [[nodiscard]] CellSide behind(CellSide s) const {
+    return way_[s] < 0 ? -1 : cell_side(cell_behind(s), way_[s] / n_ways);
+  }
   /// The link of a side that has something behind it.
-  [[nodiscard]] HexLink link(CellSide s) const { return made(s, partner_[s], turn_[s]); }
-  /// The number of a side among the boundary faces; -1 where it is none.
-  [[nodiscard]] Index32 boundary_face(CellSide s) const { return face_[s]; }
+  [[nodiscard]] HexLink link(CellSide s) const { return made(s, cell_behind(s), way_[s]); }
+  /// The number of a side among the boundary faces; -1 where it is none. A search among these.
+  [[nodiscard]] Index32 boundary_face(CellSide s) const;
   /// Across a periodic connection; nothing where a side lies on none.
   [[nodiscard]] std::optional<HexLink> periodic(CellSide s) const;
   /// The connection of a boundary face: 2 c, or 2 c + 1 from the donor's side.
   [[nodiscard]] Index32 connection(CellSide s) const { return topology_.boundary.connection[boundary_face(s)]; }
 
  private:
-  static HexLink made(CellSide from, CellSide to, int turn) {
-    return {to / 6, to % 6, &side_turns[48 * (from % 6) + 8 * (to % 6) + turn]};
+  static constexpr int n_ways = 8;  ///< in which two given sides may meet
+
+  static HexLink made(CellSide from, Index32 cell, int way) {
+    return {cell, way / n_ways, &side_turns[6 * n_ways * (from % 6) + way]};
   }
-  /// The way in which the corners of one side are those of another, by `same(node of this, node of that)`; -1: they are
-  /// not.
+  [[nodiscard]] Index32 cell_behind(CellSide s) const {
+    // Where all elements have six sides, they are numbered alike.
+    Index32 const neighbour = only_hexahedra_ ? topology_.sides.neighbour[s] : topology_.sides.of(s / 6)[s % 6];
+    return neighbour >= 0 ? neighbour : cell_across(s);
+  }
+  /// Of a side on a connection.
+  [[nodiscard]] Index32 cell_across(CellSide s) const;
+  /// n_ways * side there + the way in which the corners of one side are those of another, by `same(node of this, node
+  /// of that)`; -1: they are not.
   template <class Same>
-  [[nodiscard]] int turn_between(CellSide from, CellSide to, Same const& same) const;
-  [[nodiscard]] CellSide find_partner(CellSide s) const;
+  [[nodiscard]] int way_between(CellSide from, CellSide to, Same const& same) const;
+  [[nodiscard]] int find_way(CellSide s) const;
 
   Mesh const& mesh_;
   UnstructuredTopology const& topology_;
+  bool only_hexahedra_;
   std::vector<Index32> representative_;
-  std::vector<Index32> face_;      ///< (6 cells)
-  std::vector<CellSide> partner_;  ///< (6 cells)
-  std::vector<std::int8_t> turn_;  ///< (6 cells) of turn_between()
+  std::vector<std::int8_t> way_;  ///< (6 cells) of way_between()
   /// Per connection, its nodes as pairs of representatives, ascending: from its side, and from the donor's.
   std::vector<std::vector<std::pair<Index32, Index32>>> pairs_;
 };

@@ -78,17 +78,6 @@ FacetDistance::TiltedBox FacetDistance::tilted(int begin, int end) const {
   return out;
 }
 
-double FacetDistance::TiltedBox::distance2(Vec3 const& p) const {
-  Vec3 const d = p - centre;
-  double sum = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    double const at = dot(axis[a], d), outside = std::max({low[a] - at, at - high[a], 0.0});
-    sum += outside * outside;
-  }
-  // By less than the rounding of what lies beyond.
-  return (1 - 1e-12) * sum;
-}
-
 double FacetDistance::squared(Triangle const& t, Vec3 const& p) {
   double to_b = 0, to_c = 0;
   kernels::nearest_on_triangle(p, t[0], t[1], t[2], to_b, to_c);

@@ -1,11 +1,14 @@
 #include <gridmorph/geometry/cylindrical.hpp>
-#include <gridmorph/geometry/smoothstep.hpp>
 #include <gridmorph/motion/boundary_motion.hpp>
 #include <gridmorph/plan/elements/locate.hpp>
+#include <gridmorph/plan/elements/turning_bodies.hpp>
 #include <gridmorph/plan/elements/unstructured_planner.hpp>
+#include <gridmorph/plan/plane_axes.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 namespace gridmorph::detail {
@@ -17,10 +20,10 @@ namespace {
 class MeridionalSides {
  public:
   /// of_node: numbers of the nodes of the sides, -1: no side.
-  MeridionalSides(HostInstance const& host, Mesh const& mesh, UnstructuredTopology const& topology,
-                  NodeGraph const& graph, kernels::RowFrame const& frame, std::vector<Index32> const& of_node,
+  MeridionalSides(Mesh const& mesh, UnstructuredTopology const& topology, NodeGraph const& graph,
+                  kernels::RowFrame const& frame, std::vector<Index32> const& of_node,
                   std::vector<Index32> const& nodes)
-      : host_(host), frame_(frame), is_plane_(mesh.dimension == 2), n_(Index32(nodes.size())) {
+      : frame_(frame), is_plane_(mesh.dimension == 2), n_(Index32(nodes.size())) {
     // Machines may stand far from the origin of their axis.
     frame_.origin =
         frame_.origin + dot(mesh.coordinates[nodes.front()] - frame_.origin, frame_.direction) * frame_.direction;
@@ -54,8 +57,8 @@ class MeridionalSides {
     kernels::RowBasis const basis = frame_.basis(x);
     return {leads(0) ? dot(d, basis.along) : 0, leads(1) ? dot(d, basis.away) : 0, 0};
   }
-  [[nodiscard]] std::vector<Location> locate(std::vector<Vec3> const& places) const {
-    return gridmorph::locate(host_, plane_, places);
+  [[nodiscard]] std::vector<Location> locate(HostInstance const& host, std::vector<Vec3> const& places) const {
+    return gridmorph::locate(host, plane_, places);
   }
   [[nodiscard]] Vec3 position(Location const& at) const { return gridmorph::position(plane_, at); }
   /// The length of the longest edge of an element along the sides.
@@ -67,8 +70,9 @@ class MeridionalSides {
                                            plane_.coordinates[corners[(k + 1) % corners.size()] % n_]));
     return longest;
   }
-  [[nodiscard]] InterpolationOperator rows(std::vector<Location> const& at, std::vector<Index32> const& targets) const {
-    InterpolationOperator out = interpolation_rows(host_, plane_, at, targets);
+  [[nodiscard]] InterpolationOperator rows(HostInstance const& host, std::vector<Location> const& at,
+                                           std::vector<Index32> const& targets) const {
+    InterpolationOperator out = interpolation_rows(host, plane_, at, targets);
     for (Index32& k : out.item) k %= n_;
     return out;
   }
@@ -91,7 +95,6 @@ class MeridionalSides {
     plane_.add_element(type, corners);
   }
 
-  HostInstance host_;
   kernels::RowFrame frame_;
   bool is_plane_;
   Index32 n_;
@@ -111,9 +114,70 @@ InterpolationOperator rows_of(InterpolationOperator const& rows, std::vector<std
   return out;
 }
 
-bool is_same(CylindricalFrame const& a, CylindricalFrame const& b) {
-  return a.origin() == b.origin() && a.direction() == b.direction() && a.is_linear() == b.is_linear() &&
-         a.pitch() == b.pitch();
+/// Nodes in the meridional plane, and the places on the sides there.
+struct MeridionalPlaces {
+  std::vector<Index32> node;
+  std::vector<Vec3> place;
+  std::vector<Location> found;
+
+  [[nodiscard]] bool is_whole() const {
+    return std::none_of(found.begin(), found.end(), [](Location const& at) { return at.element < 0; });
+  }
+};
+
+/// Whether sides do different things where they have the same meridional position, as in a wheel whose passages differ.
+/// of_node: numbers of the nodes of the sides, `components` what they do.
+bool sides_differ(MeridionalSides const& sides, MeridionalPlaces const& at, InterpolationOperator const& rows,
+                  std::vector<Index32> const& of_node, std::vector<Vec3> const& place_of_side,
+                  std::vector<Vec3> const& components) {
+  constexpr double alike = 1e-2;
+  double largest = 0;
+  for (Vec3 const& c : components) largest = std::max(largest, norm(c));
+  for (Index r = 0; r < rows.size(); ++r) {
+    Index32 const own = of_node[rows.target[r]];
+    if (own < 0) continue;
+    double const same_place = 1e-6 * sides.size(at.found[r]);
+    for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      Index32 const other = rows.item[k];
+      if (distance(at.place[r], place_of_side[other]) <= same_place &&
+          distance(components[own], components[other]) > alike * largest)
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Sets the places around wall nodes, the length of an element along the sides before and behind each; false where one
+/// is not found.
+bool find_slopes(HostInstance const& host, MeridionalSides const& sides, MeridionalPlaces const& walls,
+                 MotionOfSides& passage) {
+  Vec3 const axes[2] = {{1, 0, 0}, {0, 1, 0}};
+  std::vector<Vec3> around;
+  for (std::size_t k = 0; k < walls.node.size(); ++k)
+    for (int a = 0; a < 2; ++a) {
+      Vec3 const arm = (sides.leads(a) ? sides.size(walls.found[k]) : 0) * axes[a];
+      around.push_back(walls.place[k] - arm);
+      around.push_back(walls.place[k] + arm);
+    }
+  MeridionalPlaces const beside{{}, around, sides.locate(host, around)};
+  if (!beside.is_whole()) return false;
+  std::vector<Location> all;
+  for (std::size_t k = 0; k < walls.node.size(); ++k) {
+    Location const& own = walls.found[k];
+    all.push_back(own);
+    for (int a = 0; a < 2; ++a) {
+      Location const *const before = &beside.found[4 * k + 2 * a], *const behind = before + 1;
+      all.push_back(*before);
+      all.push_back(*behind);
+      double const step = dot(axes[a], sides.position(*behind) - sides.position(*before));
+      // At the ends of the sides one place is as good as another.
+      passage.step.push_back(sides.leads(a) && step > 0.1 * sides.size(own) ? step : 0);
+    }
+  }
+  std::vector<Index32> row(all.size());
+  std::iota(row.begin(), row.end(), 0);
+  passage.places = sides.rows(host, all, row);
+  return true;
 }
 
 }  // namespace
@@ -121,21 +185,19 @@ bool is_same(CylindricalFrame const& a, CylindricalFrame const& b) {
 std::vector<Index32> UnstructuredPlanner::slots_of_following_sides(std::vector<Vec3> const& given,
                                                                    kernels::RowFrame& frame) const {
   BoundaryConditions const& b = out_.boundary;
-  CylindricalFrame const* of_rule = nullptr;
+  std::optional<kernels::RowFrame> of_rule;
   Mask is_side(b.known.size(), 0), of_row(b.known.size(), 0);
   for (auto const& r : b.requests.requests) {
     CylindricalFrame const* const own = b.motion->row_frame(r.rule);
     if (own == nullptr) continue;
     of_row[r.boundary_node] = 1;
     if (!std::holds_alternative<FollowRule>(b.motion->motion().rules[r.rule].rule)) continue;
-    if (of_rule != nullptr && !is_same(*own, *of_rule)) return {};
-    of_rule = own;
+    if (of_rule && !(own->row() == *of_rule)) return {};
+    of_rule = own->row();
     is_side[r.boundary_node] = is_middle_[b.known[r.boundary_node]] == 0 ? 1 : 0;
   }
-  if (of_rule == nullptr) return {};
-  auto const turned = [&](Vec3 const& v) { return along_axes(out_.plan.axes, v); };
-  frame = {turned(of_rule->origin()), turned(of_rule->direction()), turned(of_rule->span()), turned(of_rule->pitch()),
-           of_rule->is_linear()};
+  if (!of_rule) return {};
+  frame = along_axes(out_.plan.axes, *of_rule);
   std::vector<Index32> slots;
   for (std::size_t k = 0; k < is_side.size(); ++k) {
     if (is_side[k]) slots.push_back(Index32(k));
@@ -154,70 +216,43 @@ void UnstructuredPlanner::find_passage() {
   MotionOfSides passage;
   passage.slots = slots_of_following_sides(*given, passage.frame);
   if (passage.empty()) return;
-  std::vector<Index32> number(mesh_.n_nodes(), -1), nodes;
-  double largest = 0;
+  std::vector<Index32> of_node(mesh_.n_nodes(), -1), nodes;
   for (Index32 const s : passage.slots) {
-    number[plan.known[s]] = Index32(nodes.size());
+    of_node[plan.known[s]] = Index32(nodes.size());
     nodes.push_back(plan.known[s]);
-    largest = std::max(largest, norm((*given)[s]));
   }
-  MeridionalSides const sides(host_, mesh_, topology_, out_.graph, passage.frame, number, nodes);
-  if (sides.empty() || !(largest > 0)) return;
+  MeridionalSides const sides(mesh_, topology_, out_.graph, passage.frame, of_node, nodes);
+  std::vector<Vec3> place_of_side, components;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Vec3 const x = mesh_.coordinates[nodes[k]];
+    place_of_side.push_back(sides.place(x));
+    components.push_back(passage.frame.basis(x).components((*given)[passage.slots[k]]));
+  }
+  bool const do_nothing = std::all_of(components.begin(), components.end(), [](Vec3 const& c) { return c == Vec3{}; });
+  if (sides.empty() || do_nothing) return;
 
-  std::vector<Index32> targets;
-  std::vector<Vec3> places;
+  MeridionalPlaces all;
+  std::vector<Index32> row_of(mesh_.n_nodes(), -1);
   for (Index32 n = 0; n < Index32(mesh_.n_nodes()); ++n) {
-    if (!out_.graph.carries(n) || (out_.graph.neighbours[n].empty() && number[n] < 0)) continue;
-    targets.push_back(n);
-    places.push_back(sides.place(mesh_.coordinates[n]));
+    if (!out_.graph.carries(n) || (out_.graph.neighbours[n].empty() && of_node[n] < 0)) continue;
+    row_of[n] = Index32(all.node.size());
+    all.node.push_back(n);
+    all.place.push_back(sides.place(mesh_.coordinates[n]));
   }
-  auto const found = sides.locate(places);
-  auto const is_lost = [](Location const& at) { return at.element < 0; };
-  if (std::any_of(found.begin(), found.end(), is_lost)) return;
+  all.found = sides.locate(host_, all.place);
+  if (!all.is_whole()) return;
   // Blades that the sides end at, as in H meshes, are where the sides say nothing.
-  for (std::size_t k = 0; k < targets.size(); ++k)
-    if (drives_[targets[k]] != 0 && found[k].distance > 0.5 * sides.size(found[k])) return;
-  passage.nodes = sides.rows(found, targets);
-  // Passages of a wheel may differ: their sides do, then.
-  auto const components = [&](Index32 k) {
-    return passage.frame.basis(mesh_.coordinates[nodes[k]]).components((*given)[passage.slots[k]]);
-  };
-  for (Index r = 0; r < passage.nodes.size(); ++r) {
-    Index32 const own = number[passage.nodes.target[r]];
-    if (own < 0) continue;
-    constexpr double alike = 1e-2;
-    for (Index k = passage.nodes.first[r]; k < passage.nodes.first[r + 1]; ++k) {
-      Index32 const other = passage.nodes.item[k];
-      if (distance(places[r], sides.place(mesh_.coordinates[nodes[other]])) <= 1e-6 * sides.size(found[r]) &&
-          distance(components(own), components(other)) > alike * largest)
-        return;
-    }
-  }
-
-  std::vector<Index32> place_of(mesh_.n_nodes(), -1);
-  for (std::size_t k = 0; k < targets.size(); ++k) place_of[targets[k]] = Index32(k);
-  std::vector<Vec3> around;
+  for (std::size_t k = 0; k < all.node.size(); ++k)
+    if (drives_[all.node[k]] != 0 && all.found[k].distance > 0.5 * sides.size(all.found[k])) return;
+  passage.nodes = sides.rows(host_, all.found, all.node);
+  if (sides_differ(sides, all, passage.nodes, of_node, place_of_side, components)) return;
+  MeridionalPlaces walls;
   for (Index32 const n : plan.driving) {
-    Vec3 const p = places[place_of[n]];
-    double const h = sides.size(found[place_of[n]]);
-    around.push_back(p);
-    for (int a = 0; a < 2; ++a)
-      for (double const sign : {-1.0, 1.0})
-        around.push_back(sides.leads(a) ? p + sign * h * (a == 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}) : p);
+    walls.node.push_back(n);
+    walls.place.push_back(all.place[row_of[n]]);
+    walls.found.push_back(all.found[row_of[n]]);
   }
-  auto const at = sides.locate(around);
-  if (std::any_of(at.begin(), at.end(), is_lost)) return;
-  std::vector<Index32> row(at.size());
-  for (std::size_t k = 0; k < row.size(); ++k) row[k] = Index32(k);
-  passage.places = sides.rows(at, row);
-  for (std::size_t k = 0; k < plan.driving.size(); ++k)
-    for (int a = 0; a < 2; ++a) {
-      std::size_t const before = std::size_t(kernels::passage_places) * k + 1 + 2 * std::size_t(a);
-      Vec3 const d = sides.position(at[before + 1]) - sides.position(at[before]);
-      double const step = a == 0 ? d.x : d.y;
-      // At the ends of the sides one place is as good as another.
-      passage.step.push_back(sides.leads(a) && step > 0.1 * sides.size(at[before]) ? step : 0);
-    }
+  if (!find_slopes(host_, sides, walls, passage)) return;
   plan.passage = std::move(passage);
   out_.report.with_sides = true;
 }
@@ -233,15 +268,13 @@ void UnstructuredPlanner::plan_passage() {
   constexpr double turn_share = 0.5;
   NearestSource const& given = from_given_.distance.empty() ? from_other_ : from_given_;
   for (std::size_t r = 0; r < plan.fit.nodes.target.size(); ++r) {
+    plan.fit.room[r] *= turn_share;
     auto const n = std::size_t(plan.fit.nodes.target[r]);
     double const d = beyond_column(n), other = given.distance[n];
     if (!std::isfinite(other)) continue;
-    // As shifts fade, turning_bodies.hpp.
-    constexpr double cubic = 0.1;
-    double const t = d + other > 0 ? d / (d + other) : 0, kept = 1 - t - cubic * (smoothstep(t) - t);
+    double const kept = faded(d + other > 0 ? d / (d + other) : 0);
     plan.fit.lean[r] = kept * plan.fit.lean[r];
     plan.fit.level[r] *= kept;
-    plan.fit.room[r] *= turn_share;
   }
 }
 

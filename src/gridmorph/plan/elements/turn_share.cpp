@@ -49,9 +49,14 @@ double compactness(double perimeter, double size) {
   return std::clamp((perimeter / (2 * std::numbers::pi * size) - 0.7) / 0.15, 0.0, 1.0);
 }
 
+double faded(double t) {
+  constexpr double cubic = 0.1;
+  return 1 - t - cubic * (t * t * (3 - 2 * t) - t);
+}
+
 void shift_shares(std::span<double const> from_bodies, std::span<double const> sizes, std::span<double const> moved,
                   double from_others, std::span<double> shares) {
-  constexpr double cubic = 0.1, of_what_is_left = 0.1;
+  constexpr double of_what_is_left = 0.1;
   double nearest = from_others, second = from_others;
   for (double const d : from_bodies) {
     second = std::min(second, std::max(d, nearest));
@@ -72,7 +77,7 @@ void shift_shares(std::span<double const> from_bodies, std::span<double const> s
       if (k != b) nearness += 1 / grown(k);
     // Zero at the others, whatever the distance from the body is.
     double const done = grown(b) * nearness, t = std::isinf(nearness) ? 1 : done / (1 + done);
-    shares[b] = 1 - t - cubic * (t * t * (3 - 2 * t) - t);
+    shares[b] = faded(t);
   }
 }
 

@@ -99,9 +99,12 @@ double narrowness(double way, double size);
 /// in a cascade is better off by distances from 12 degrees on.
 double compactness(double perimeter, double size);
 
+/// How much is left of a shift at a share t of the way to where nothing is: 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3).
+double faded(double t);
+
 /// How much of each body's shift a place makes:
 ///
-///   s_b = 1 - 0.9 t - 0.1 (3 t^2 - 2 t^3),   t = g_b / (g_b + D),
+///   s_b = faded(t),   t = g_b / (g_b + D),
 ///   1 / D = 1 / d + sum over the other bodies k of 1 / g_k,
 ///   g_b = d_b - l log(1 + d_b / l),   l = min(S_b min(1, W / (8 S_b))^2, 0.1 W (W / m_b - 1))
 ///
