@@ -4,12 +4,14 @@
 #include "support/morph_run.hpp"
 
 #include <gridmorph/core/instantiate.hpp>
+#include <gridmorph/kernels/instruction_sets.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gridmorph::test {
 
@@ -17,9 +19,19 @@ namespace gridmorph::test {
 template <class Exec>
 constexpr bool on_host = Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Exec::memory_space>::accessible;
 
-/// Calls work(exec, "name of the space") for each of them.
+/// Calls work(exec, "name of the space") for each of them, and for the host once more by the narrower instruction set.
 template <class Work>
 void on_every_space(Work const& work) {
+#ifdef GRIDMORPH_TWO_INSTRUCTION_SETS
+  struct Narrow {
+    bool before = std::exchange(kernels::uses_avx2(), false);
+    ~Narrow() { kernels::uses_avx2() = before; }
+  };
+  if (kernels::uses_avx2()) {
+    Narrow const narrow;
+    work(Kokkos::DefaultHostExecutionSpace(), "host without AVX2");
+  }
+#endif
 #define GRIDMORPH_CALL(Exec) work(Exec(), Exec::name());
   GRIDMORPH_FOR_EACH_EXEC(GRIDMORPH_CALL)
 #undef GRIDMORPH_CALL

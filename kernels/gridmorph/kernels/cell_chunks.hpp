@@ -8,6 +8,7 @@
 
 #include <gridmorph/kernels/grid_line.hpp>
 #include <gridmorph/kernels/lanes.hpp>
+#include <gridmorph/kernels/launch.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -36,7 +37,8 @@ template <class Exec>
 struct CellPolicy {
   static constexpr bool on_host =
       Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Exec::memory_space>::accessible;
-  static constexpr int lanes = on_host ? native_lanes : 1;
+  /// As many as registers of the widest copy of a kernel hold (instruction_sets.hpp).
+  static constexpr int lanes = !on_host ? 1 : has_two_instruction_sets ? 4 : native_lanes;
   static constexpr int row_length = on_host ? 64 : 1;  ///< scratch arrays of rows stay in the first-level cache
   static constexpr int team_size = on_host ? 1 : 32;   ///< partial sums of a team fit into 48 KiB of scratch memory
 };
@@ -84,14 +86,19 @@ KOKKOS_INLINE_FUNCTION Index first_cell(ZoneCells const& zone, RowOfCells const&
   return zone.first_cell + r.i + r.j * zone.cell_stride(1) + r.k * zone.cell_stride(2);
 }
 
+/// Of visits that take CellPolicy::lanes cells at once.
+inline constexpr bool by_lanes = true;
+
 /// CPUs: one work item per chunk.
-template <class Exec, class Result, class Visit>
+template <class Exec, class Result, class Visit, bool lanes>
 struct ChunkPerItem {
+  static constexpr bool two_instruction_sets = lanes;
+
   Kokkos::View<CellChunk const*, typename Exec::memory_space> chunks;
   Kokkos::View<Result*, typename Exec::memory_space> results;
   Visit visit;
 
-  KOKKOS_INLINE_FUNCTION void operator()(int c) const {
+  KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
     Result result;
     for_each_row(chunks(c), CellPolicy<Exec>::row_length, [&](RowOfCells const& row) { visit(row, result); });
     results(c) = result;
@@ -134,14 +141,15 @@ void visit_chunks_by_teams(Exec const& exec, std::string const& label, int team_
 }
 
 /// Calls visit(row, result) for every row of every chunk; results(c), one per chunk, begins as Result() and gathers the
-/// rows of chunk c. Result::join(other) adds what another thread gathered. `visit` runs on the device.
-template <class Exec, class Result, class Visit>
+/// rows of chunk c. Result::join(other) adds what another thread gathered. `visit` runs on the device. lanes: by_lanes,
+/// or not.
+template <bool lanes = false, class Exec, class Result, class Visit>
 void visit_chunks(Exec const& exec, std::string const& label,
                   Kokkos::View<CellChunk*, typename Exec::memory_space> const& chunks,
                   Kokkos::View<Result*, typename Exec::memory_space> const& results, Visit const& visit) {
   if constexpr (CellPolicy<Exec>::on_host)
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec>(exec, 0, int(chunks.extent(0))),
-                         ChunkPerItem<Exec, Result, Visit>{chunks, results, visit});
+    launch(label.c_str(), exec, 0, Index(chunks.extent(0)),
+           ChunkPerItem<Exec, Result, Visit, lanes>{chunks, results, visit});
   else
     visit_chunks_by_teams<Exec, Result, Visit>(exec, label, CellPolicy<Exec>::team_size, {chunks, results, visit});
 }

@@ -55,7 +55,7 @@ void check_blocks(Exec const& exec, Kokkos::View<CellChunk*, typename Exec::memo
                   Kokkos::View<ZoneCells*, typename Exec::memory_space> const& zones, VectorArray const& x,
                   Kokkos::View<ChunkValidity*, typename Exec::memory_space> const& of_chunk) {
   using Policy = CellPolicy<Exec>;
-  visit_chunks(
+  visit_chunks<by_lanes>(
       exec, "gridmorph::validity::blocks", chunks, of_chunk,
       KOKKOS_LAMBDA(RowOfCells const& row, ChunkValidity& validity) {
         RowNodes<Policy::row_length> const nodes(x, zones(row.zone), row);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <gridmorph/kernels/common_motion.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 
 namespace gridmorph::kernels {
@@ -31,8 +32,8 @@ struct CommonMoves {
 
   /// A row of nodes, the first of which is `node`, from v to u; x: its baseline. f: counted from `field` on.
   template <int width>
-  KOKKOS_INLINE_FUNCTION void add_to(int part, int f, Index node, int n, VectorRow<width> const& x,
-                                     VectorRow<width>& u) const {
+  GRIDMORPH_CALLED_ON_HOST KOKKOS_FUNCTION void add_to(int part, int f, Index node, int n, VectorRow<width> const& x,
+                                                       VectorRow<width>& u) const {
     CommonFrame const& frame = frames(part);
     CommonMove const& own = move(part, field + f);
     if (before != nullptr) return add_rate(frame, move(part, of), own.map, before + node, n, x, u);

@@ -14,6 +14,25 @@
 #include <Kokkos_MathematicalFunctions.hpp>
 #endif
 
+/// Before a loop whose iterations do not wait for one another, though the compiler cannot see it.
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define GRIDMORPH_INDEPENDENT_LOOP
+#elif defined(__clang__)
+#define GRIDMORPH_INDEPENDENT_LOOP _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define GRIDMORPH_INDEPENDENT_LOOP _Pragma("GCC ivdep")
+#else
+#define GRIDMORPH_INDEPENDENT_LOOP
+#endif
+
+/// Functions of kernels that are called and not copied on the host, however much else is (instruction_sets.hpp): those
+/// that gain nothing from it, and would make most of what is compiled.
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+#define GRIDMORPH_CALLED_ON_HOST [[gnu::noinline]]
+#else
+#define GRIDMORPH_CALLED_ON_HOST
+#endif
+
 namespace gridmorph::kernels::compat {
 
 /// Mathematical functions for host and device.

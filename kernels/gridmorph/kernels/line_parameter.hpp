@@ -68,6 +68,8 @@ struct LineParameters {
   Field<double const> x;
   double* t;
 
+  static constexpr bool two_instruction_sets = true;
+
   static Index items(Tube const& tube) { return tiles(tube.n_a, Width) * tube.n_b; }
 
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {

@@ -10,6 +10,7 @@
 // a lookup per line, next to the one before.
 #pragma once
 
+#include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/side_correction.hpp>
 
 namespace gridmorph::kernels {
@@ -30,7 +31,7 @@ struct RowCorrection {
   int n;
 
   /// v += correction, in the frame of the chain.
-  KOKKOS_INLINE_FUNCTION void add_to(VectorRow<width>& v) const {
+  GRIDMORPH_CALLED_ON_HOST KOKKOS_FUNCTION void add_to(VectorRow<width>& v) const {
     Range const range = range_of_t();
     double A[width], B[width], weight[width];
     if (chain.blends_along(0) || chain.blends_along(1)) {

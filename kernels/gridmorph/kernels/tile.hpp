@@ -12,15 +12,18 @@
 
 namespace gridmorph::kernels {
 
-template <class ExecutionSpace>
-struct TileShape {
-  static constexpr bool host = std::is_same_v<typename ExecutionSpace::memory_space, Kokkos::HostSpace>;
+template <bool on_host>
+struct TileShapeOf {
+  static constexpr bool host = on_host;
   static constexpr int row = host ? 128 : 1;       ///< nodes of a surface row
   static constexpr int lines = host ? 64 : 1;      ///< neighbouring grid lines walked together
   static constexpr int volume_i = host ? 256 : 1;  ///< nodes of a volume tile along i, j, k
   static constexpr int volume_j = host ? 16 : 1;
   static constexpr int volume_k = host ? 32 : 1;
 };
+/// One for all execution spaces of the host, so that they share what is compiled for it.
+template <class ExecutionSpace>
+using TileShape = TileShapeOf<std::is_same_v<typename ExecutionSpace::memory_space, Kokkos::HostSpace>>;
 
 /// A number that the compiler knows where a variable may stand too. (The conversion of std::integral_constant is a
 /// function for the host alone.)

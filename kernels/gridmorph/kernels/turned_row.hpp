@@ -101,7 +101,8 @@ struct TurnedRow {
         v);
   }
   template <class Step>
-  KOKKOS_INLINE_FUNCTION void add_rates(Step step, VectorRow<width> const& x, VectorRow<width>& v) const {
+  GRIDMORPH_CALLED_ON_HOST KOKKOS_FUNCTION void add_rates(Step step, VectorRow<width> const& x,
+                                                          VectorRow<width>& v) const {
     add(
         [&](int w) {
           Index const at = lower + w * step;

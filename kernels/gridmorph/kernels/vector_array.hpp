@@ -47,6 +47,17 @@ struct VectorArray {
       body(row<double>(n));
   }
 
+  /// Where the row that begins at node n is one of doubles with unit stride: its arrays.
+  template <class Real>
+  KOKKOS_INLINE_FUNCTION bool plain_row(Index n, Real*& at_x, Real*& at_y, Real*& at_z) const {
+    if (single) return false;
+    Row<double> const at = row<double>(n);
+    at_x = at.x;
+    at_y = at.y;
+    at_z = at.z;
+    return at.stride == 1;
+  }
+
   KOKKOS_INLINE_FUNCTION Vec3 operator[](Index n) const {
     Vec3 v;
     with_row(n, [&](auto const& at) { v = {double(*at.x), double(*at.y), double(*at.z)}; });

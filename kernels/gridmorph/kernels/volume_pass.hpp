@@ -11,6 +11,7 @@
 #pragma once
 
 #include <gridmorph/kernels/common_rows.hpp>
+#include <gridmorph/kernels/fused_row.hpp>
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
@@ -100,6 +101,7 @@ struct VolumePass {
   CommonMoves<MemorySpace> common = {};
 
   static constexpr int width = Shape::volume_i;
+  static constexpr bool two_instruction_sets = true;
   using Row = VectorRow<width>;
 
   /// The same for boxes of another kind.
@@ -127,11 +129,14 @@ struct VolumePass {
         local <= 0xffffffffLL ? first_node<std::uint32_t>(box, local) : first_node<Index>(box, local);
     int const n = smaller(width, box.n[0] - i);
     int const j1 = smaller(j0 + Shape::volume_j, box.n[1]), k1 = smaller(k0 + Shape::volume_k, box.n[2]);
+    bool const is_fused = Shape::host && can_fuse(box, n_terms);
     for (int k = k0; k < k1; ++k)
       for (int j = j0; j < j1; ++j)
         for (int f = 0; f < n_fields; ++f) {
           Row u;
           Index const node = box.first + i + j * box.stride_j + k * box.stride_k;
+          if constexpr (Shape::host)
+            if (is_fused && write_at_once(box, n_terms, f, i, j, k, n, node)) continue;
           for (int m = 0; m < n_terms; ++m) {
             add_term(box, terms(box.first_term + m), m == 0, f, i, j, k, n, u);
             if constexpr (Kind != VolumeKind::plain)
@@ -155,17 +160,52 @@ struct VolumePass {
   }
   KOKKOS_INLINE_FUNCTION static int smaller(int a, int b) { return a < b ? a : b; }
 
+  /// Whether the rows of a box have one or two terms of the kinds that fused_row.hpp has.
+  KOKKOS_INLINE_FUNCTION bool can_fuse(VolumeBox const& box, int n_terms) const {
+    if (n_terms < 1 || n_terms > 2 || (box.n_swept > 0 && !common.leaves_out)) return false;
+    for (int m = 0; m < n_terms; ++m) {
+      VolumeTerm const& term = terms(box.first_term + m);
+      Chain const& chain = chains(term.chain);
+      if (!is_plain(chain, term) || !kernels::can_fuse(chain.law, term.end_stride[0])) return false;
+    }
+    return true;
+  }
+  KOKKOS_INLINE_FUNCTION static bool is_plain(Chain const& chain, VolumeTerm const& term) {
+    return Kind == VolumeKind::plain || (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none);
+  }
+
+  /// All of a row in one loop, where its arrays are plain ones of doubles; otherwise nothing is done.
+  KOKKOS_INLINE_FUNCTION bool write_at_once(VolumeBox const& box, int n_terms, int f, int i, int j, int k, int n,
+                                            Index node) const {
+    FusedRow row{nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, n};
+    if (!out[f].plain_row(node, row.x, row.y, row.z)) return false;
+    if (Move && !baseline.plain_row(node, row.from_x, row.from_y, row.from_z)) return false;
+    VolumeTerm const &a = terms(box.first_term), &b = terms(box.first_term + n_terms - 1);
+    LineLaw const law = chains(a.chain).law;
+    if (n_terms == 1)
+      write_fused<Move>(row, law, ends_of_row(box, a, f, i, j, k, n));
+    else
+      write_fused<Move>(row, law, ends_of_row(box, a, f, i, j, k, n), chains(b.chain).law,
+                        ends_of_row(box, b, f, i, j, k, n));
+    return true;
+  }
+
+  KOKKOS_INLINE_FUNCTION RowEnds ends_of_row(VolumeBox const& box, VolumeTerm const& term, int f, int i, int j, int k,
+                                             int n) const {
+    return {ends[f],
+            term.end_value + i * term.end_stride[0] + j * term.end_stride[1] + k * term.end_stride[2],
+            chains(term.chain).section_size(),
+            term.end_stride[0],
+            term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
+            n};
+  }
+
   /// u = (first) or u += the displacement that one chain gives to a row.
   KOKKOS_INLINE_FUNCTION void add_term(VolumeBox const& box, VolumeTerm const& term, bool first, int f, int i, int j,
                                        int k, int n, Row& u) const {
     Chain const& chain = chains(term.chain);
-    RowEnds const row{ends[f],
-                      term.end_value + i * term.end_stride[0] + j * term.end_stride[1] + k * term.end_stride[2],
-                      chain.section_size(),
-                      term.end_stride[0],
-                      term.t < 0 ? nullptr : t + term.t + i + box.n[0] * (j + Index(box.n[1]) * k),
-                      n};
-    if (Kind == VolumeKind::plain || (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none)) {
+    RowEnds const row = ends_of_row(box, term, f, i, j, k, n);
+    if (is_plain(chain, term)) {
       first ? interpolate<false>(chain, row, u) : interpolate<true>(chain, row, u);
       return;
     }
@@ -184,14 +224,6 @@ struct VolumePass {
       }
     }
   }
-
-  /// The two ends of the lines through a row of nodes, and where the nodes lie on them.
-  struct RowEnds {
-    Field<double const> e;
-    Index lower, section, step;
-    double const* t;
-    int n;
-  };
 
   /// What the ends of its lines turn a row of nodes by, the first of which is `node`.
   KOKKOS_INLINE_FUNCTION void add_turned(Chain const& chain, VolumeTerm const& term, int f, RowEnds const& row,
@@ -239,19 +271,8 @@ struct VolumePass {
           return between_ends<Add>(
               row, step, [](double t) { return t * t * (3 - 2 * t); }, u);
         case LineLaw::c2:
-          return between_ends<Add>(
-              row, step, [](double t) { return law_weight(LineLaw::c2, t); }, u);
-        case LineLaw::cubic: {
-          double const a = chain.slope[0], b = chain.slope[1];
-          return between_ends<Add>(
-              row, step, [a, b](double t) { return cubic_weight(a, b, t); }, u);
-        }
-        case LineLaw::table: {
-          double const* const knots = law_knots + chain.first_knot;
-          int const n = chain.n_intervals;
-          return between_ends<Add>(
-              row, step, [knots, n](double t) { return table_weight(knots, n, t); }, u);
-        }
+        case LineLaw::cubic:
+        case LineLaw::table: return interpolate_by_asked_law<Add>(chain, row, u);
         case LineLaw::constant:
           put<Add>(
               row.n, [&](int w) { return row.e.x[row.lower + w * step]; }, u.x);
@@ -259,6 +280,26 @@ struct VolumePass {
               row.n, [&](int w) { return row.e.y[row.lower + w * step]; }, u.y);
           put<Add>(
               row.n, [&](int w) { return row.e.z[row.lower + w * step]; }, u.z);
+      }
+    });
+  }
+  /// The laws that chains have where somebody asks for them.
+  template <bool Add>
+  GRIDMORPH_CALLED_ON_HOST KOKKOS_FUNCTION void interpolate_by_asked_law(Chain const& chain, RowEnds const& row,
+                                                                         Row& u) const {
+    with_step(row.step, [&](auto step) {
+      if (chain.law == LineLaw::c2) {
+        between_ends<Add>(
+            row, step, [](double t) { return law_weight(LineLaw::c2, t); }, u);
+      } else if (chain.law == LineLaw::cubic) {
+        double const a = chain.slope[0], b = chain.slope[1];
+        between_ends<Add>(
+            row, step, [a, b](double t) { return cubic_weight(a, b, t); }, u);
+      } else {
+        double const* const knots = law_knots + chain.first_knot;
+        int const n = chain.n_intervals;
+        between_ends<Add>(
+            row, step, [knots, n](double t) { return table_weight(knots, n, t); }, u);
       }
     });
   }

@@ -96,7 +96,7 @@ Certificate certify(Exec const& exec, Mesh const& mesh, CertificateInput<typenam
   auto const zones = detail::upload(exec, "gridmorph::certify::zones", detail::zone_cells(mesh, handedness));
   auto const chunks = detail::upload(exec, "gridmorph::certify::chunks", table);
   auto const of_chunk = results(exec, table.size());
-  kernels::visit_chunks(
+  kernels::visit_chunks<kernels::by_lanes>(
       exec, "gridmorph::certify::blocks", chunks, of_chunk,
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, ChunkCertificate& certificate) {
         kernels::ZoneCells const zone = zones(row.zone);

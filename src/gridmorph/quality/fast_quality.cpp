@@ -89,7 +89,7 @@ QualityReport fast_quality(Exec const& exec, Mesh const& mesh, QualityInput<type
   bool const has_near_field = near_field.extent(0) > 0;
   CellLimits const limits = input.limits;
   CellScreen const screen(limits);
-  kernels::visit_chunks(
+  kernels::visit_chunks<kernels::by_lanes>(
       exec, "gridmorph::measure_quality::verdict", chunks, sums,
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, PartialSums& s) {
         kernels::ZoneCells const zone = zones(row.zone);

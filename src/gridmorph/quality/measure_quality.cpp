@@ -72,7 +72,7 @@ void add_ratios(Exec const& exec, std::string const& label, Measure measure,
   Kokkos::View<detail::NeighbourRatios*, typename Exec::memory_space> const ratios(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::neighbour_ratios"), sums.size());
   bool const has_near_field = near_field.extent(0) > 0;
-  kernels::visit_chunks(
+  kernels::visit_chunks<kernels::by_lanes>(
       exec, label, chunks, ratios, KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::NeighbourRatios& s) {
         constexpr int lanes = Policy::lanes, length = Policy::row_length;
         kernels::ZoneCells const zone = zones(row.zone);
@@ -108,7 +108,7 @@ std::vector<detail::PartialSums> sums_of_cells(
   bool const has_near_field = near_field.extent(0) > 0;
   CellLimits const limits = passes.input.limits;
   detail::CellScreen const screen(limits);
-  kernels::visit_chunks(
+  kernels::visit_chunks<kernels::by_lanes>(
       exec, "gridmorph::measure_quality::cells", chunks, sums,
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, detail::PartialSums& s) {
         constexpr int lanes = Policy::lanes, length = Policy::row_length;

@@ -40,7 +40,7 @@ CellValue min_determinant(Exec const& exec, Mesh const& mesh,
   auto const chunks = detail::upload(exec, "gridmorph::quality::chunks", table);
   Kokkos::View<SmallestCell*, typename Exec::memory_space> const minima(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::minima"), table.size());
-  kernels::visit_chunks(
+  kernels::visit_chunks<kernels::by_lanes>(
       exec, "gridmorph::min_determinant", chunks, minima,
       KOKKOS_LAMBDA(kernels::RowOfCells const& row, SmallestCell& smallest_of_chunk) {
         double determinant[Policy::row_length], mark[Policy::row_length];
