@@ -7,6 +7,7 @@ target_compile_options(
   gridmorph_own_options
   INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>:-Wall -Wextra>
             $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict -Wno-psabi>
+            $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-psabi>
             $<$<AND:$<BOOL:${GRIDMORPH_WARNINGS_AS_ERRORS}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>>:-Werror>
             $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang,IntelLLVM>:-ffp-contract=off -fno-math-errno>)
 # The name of what rounds in public headers: see kernels/vec3.hpp.
