@@ -1,7 +1,7 @@
 # Options of our own targets; never exported. -Wno-restrict: gcc 12 sees an overlap in every "text" + std::string (gcc
-# bug 105651). -Wno-psabi: vectors of four doubles are returned by functions that are always inlined. Fused multiply-adds chosen by the optimiser make results depend on inlining and vectorisation, so that backends, or two
-# orientations of one line, round differently. Nobody asks errno about square roots; without it they are one instruction, for all lanes of
-# a register.
+# bug 105651). -Wno-psabi: vectors of four doubles are returned by functions that are always inlined. Fused multiply-adds chosen by the
+# optimiser make results depend on inlining and vectorisation, so that backends, or two orientations of one line, round differently. Nobody
+# asks errno about square roots; without it they are one instruction, for all lanes of a register.
 add_library(gridmorph_own_options INTERFACE)
 target_compile_options(
   gridmorph_own_options

@@ -62,10 +62,21 @@ struct Volume {
     auto const d = device_plan(exec, prepared.plan(), x.read());
     VectorView<Memory> const field(x);
     kernels::TurnedEndsBatch const turned{d->turns.read_ends(0, 0), d->turns.ends_stride()};
-    kernels::VolumePass<Memory, kernels::TileShape<Exec>, true> const kernel{
-        d->boxes.entries, d->terms,      d->boxes.first_item, d->lines.chains, d->rotations,
-        d->sides,         d->t.data(),   d->law_knots.data(), d->ends.read(),  d->residuals.read(),
-        turned,           field.array(), {field.array()}};
+    kernels::VolumePass<Memory, kernels::TileShape<Exec>> const kernel{d->boxes.entries,
+                                                                       d->terms,
+                                                                       d->boxes.first_item,
+                                                                       d->lines.chains,
+                                                                       d->rotations,
+                                                                       d->sides,
+                                                                       d->t.data(),
+                                                                       d->law_knots.data(),
+                                                                       d->ends.read(),
+                                                                       d->residuals.read(),
+                                                                       turned,
+                                                                       field.array(),
+                                                                       {field.array()},
+                                                                       1,
+                                                                       true};
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { kernels::pass_volume(exec, d->volume_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};
@@ -137,6 +148,7 @@ struct SideResiduals {
     kernels::SideResidual<Memory> const residual{d->lines.chains, d->sides, stage.side_lines, d->ends.read().first, c};
     kernels::EdgeFill<Memory> const edges{d->lines.chains, d->sides, stage.corrected, c};
     kernels::SideFill<Memory> const sides{d->lines.chains, d->sides, stage.side_lines, c};
+    kernels::SidesAcross<Memory> const across{d->lines.chains, d->sides, stage.across, c};
     return {[=] {
               auto const& s = d->stages.front();
               auto const lines = Index(s.side_lines.extent(0));
@@ -145,8 +157,9 @@ struct SideResiduals {
               kernels::launch("gridmorph::bench::side_residual::edges", exec, 0, 4 * Index(s.corrected.extent(0)),
                               edges);
               kernels::launch("gridmorph::bench::side_residual::sides", exec, 0, lines, sides);
+              kernels::launch("gridmorph::bench::side_residual::across", exec, across);
             },
-            std::int64_t(d->residuals.n), 104};
+            std::int64_t(prepared.plan().stages.front().sides.t.size()), 104};
   }
 };
 

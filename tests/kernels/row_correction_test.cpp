@@ -76,21 +76,28 @@ struct Tables {
   kernels::SideTable<Host> table;
   Arrays residuals{0};
 
-  explicit Tables(RandomChain& r) {
+  /// across: with second copies of all sides, line by line.
+  Tables(RandomChain& r, bool across) {
     std::vector<kernels::Side> sides;
     std::vector<double> t, per_t, section;
+    auto const add = [&](int side, std::size_t w, int s) {
+      auto const& f = r.t[side][w];
+      t.push_back(f[s]);
+      per_t.push_back(s + 1 < r.chain.n_s ? 1 / (f[s + 1] - f[s]) : 0);
+      Vec3 const c = r.residual[side][w][s];
+      residuals.x.push_back(c.x);
+      residuals.y.push_back(c.y);
+      residuals.z.push_back(c.z);
+    };
     for (int side = 0; side < 4; ++side) {
       sides.push_back({0, int(r.t[side].size()), kernels::Index(t.size())});
       for (std::size_t w = 0; w < r.t[side].size(); ++w)
-        for (int s = 0; s < r.chain.n_s; ++s) {
-          auto const& f = r.t[side][w];
-          t.push_back(f[s]);
-          per_t.push_back(s + 1 < r.chain.n_s ? 1 / (f[s + 1] - f[s]) : 0);
-          Vec3 const c = r.residual[side][w][s];
-          residuals.x.push_back(c.x);
-          residuals.y.push_back(c.y);
-          residuals.z.push_back(c.z);
-        }
+        for (int s = 0; s < r.chain.n_s; ++s) add(side, w, s);
+    }
+    for (int side = 0; side < 4 && across; ++side) {
+      sides[side].across = kernels::Index(t.size());
+      for (int s = 0; s < r.chain.n_s; ++s)
+        for (std::size_t w = 0; w < r.t[side].size(); ++w) add(side, w, s);
     }
     for (auto const& fractions : r.section) section.insert(section.end(), fractions.begin(), fractions.end());
     table = {view(sides), {}, view(t), view(per_t), view(section), residuals.read()};
@@ -99,8 +106,8 @@ struct Tables {
 
 /// All rows inside a chain in one direction (0: along s, 1: a, 2: b), up or down, of at most `width` nodes.
 template <int width>
-void expect_boolean_sum(RandomChain& r, int direction, int step, double unevenness) {
-  Tables const tables(r);
+void expect_boolean_sum(RandomChain& r, int direction, int step, double unevenness, bool across) {
+  Tables const tables(r, across);
   int const n[3] = {r.chain.n_s, r.chain.n_a, r.chain.n_b};
   for (int p = 1; p < n[(direction + 1) % 3] - 1; ++p)
     for (int q = 1; q < n[(direction + 2) % 3] - 1; ++q) {
@@ -132,18 +139,34 @@ TEST(RowCorrection, IsTheBooleanSumInEveryDirection) {
   constexpr unsigned all = 255, two_a = 3 | 240, two_b = 12 | 240, one_side = 4, edges_only = 240, mixed = 1 | 8 | 64;
   unsigned seed = 0;
   for (unsigned const known : {all, two_a, two_b, one_side, edges_only, mixed})
-    for (double const unevenness : {0.0, 0.01, 1.0})  // rows between two knots, on both sides of one, all over
+    // Rows on the knots, around them by rounding and by more, all over.
+    for (double const unevenness : {0.0, 1e-15, 0.01, 1.0})
       for (int direction = 0; direction < 3; ++direction)
         for (int const step : {1, -1}) {
-          RandomChain chain({7, 9, 6}, known, unevenness, ++seed);
-          expect_boolean_sum<16>(chain, direction, step, unevenness);
-          expect_boolean_sum<1>(chain, direction, step, unevenness);
+          RandomChain chain({17, 23, 15}, known, unevenness, ++seed);  // groups of 8 and 4 nodes, and some left
+          expect_boolean_sum<32>(chain, direction, step, unevenness, true);
+          expect_boolean_sum<32>(chain, direction, step, unevenness, false);
+          expect_boolean_sum<1>(chain, direction, step, unevenness, false);
         }
+}
+
+/// A row in which t rises by a known part of an interval from node to node, so that groups lie in one pair of
+/// intervals, come to the next, or to the one after.
+TEST(RowCorrection, FollowsRowsThatRunThroughIntervals) {
+  for (double const part : {0.01, 0.06, 0.2, 0.7, -0.06, -0.2}) {
+    RandomChain chain({33, 40, 5}, 255, 0.3, 11);
+    Tables const tables(chain, true);
+    std::vector<double> t;
+    for (int w = 0; w < 38; ++w) t.push_back(((part > 0 ? 2.3 : 30.4) + part * w) / 32);
+    kernels::VectorRow<64> v{};
+    kernels::RowCorrection<Host, 64>{tables.table, chain.chain, 16, 0, 1, 1, 2, 0, t.data(), 38}.add_to(v);
+    for (int w = 0; w < 38; ++w) EXPECT_NEAR(v.z[w], chain.boolean_sum(1 + w, 2, t[w]).z, 1e-13) << part << ' ' << w;
+  }
 }
 
 TEST(RowCorrection, ReadsLinesOfTwoNodes) {
   RandomChain chain({2, 5, 4}, 255, 0, 3);
-  Tables const tables(chain);
+  Tables const tables(chain, true);
   double const t[3] = {0.25, 0.5, 0.75};
   kernels::VectorRow<4> v{};
   kernels::RowCorrection<Host, 4>{tables.table, chain.chain, 0, 0, 1, 1, 2, 0, t, 3}.add_to(v);

@@ -86,6 +86,21 @@ TEST_F(SequenceRun, ManyStepsDriftByNothing) {
             0);
 }
 
+TEST_F(SequenceRun, AVerdictOfStepsSaysWhatAllMeasuresSay) {
+  for (std::string const limit : {"", "[guard]\nmin_determinant = 0.99\nmax_skewness = 0.3\n"}) {
+    write_sequence("steps = 4\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.8, phase_deg = 20", limit);
+    auto const report = [&](std::string const& quality) {
+      Outcome const run = gridmorph("morph case.toml --quality " + quality + " --report r.json");
+      EXPECT_EQ(run.status, limit.empty() ? 0 : 1) << run.err;
+      return nlohmann::json::parse(contents(path("r.json")));
+    };
+    auto const by_verdicts = report("auto"), all = report("full");
+    for (auto const* part : {"baseline", "morphed", "sequence"}) EXPECT_EQ(by_verdicts.at(part), all.at(part)) << part;
+    EXPECT_EQ(all.at("sequence").at("steps").at(0).at("shortfalls").empty(), limit.empty());
+    EXPECT_FALSE(by_verdicts.at("morphed").at("verdict_only").get<bool>());
+  }
+}
+
 TEST_F(SequenceRun, OneFileHoldsTheSameStepsAsOneFileEach) {
   write_sequence("steps = 3\nperiod = 0.5\noutput = \"out_{step}.cgns\"\n", ", amplitude = 0.4");
   ASSERT_EQ(gridmorph("morph case.toml").status, 0);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/kernels/tile.hpp>
 
 #include <Kokkos_Core.hpp>
 
@@ -57,6 +58,22 @@ KOKKOS_FORCEINLINE_FUNCTION T load_lanes(double const* p) {
   }
 }
 
+/// The values at p[0], p[step], p[2 step], ...
+template <class T, int step>
+KOKKOS_FORCEINLINE_FUNCTION T load_lanes_by(Constant<step>, double const* p) {
+  if constexpr (lane_count<T> == 1) {
+    return *p;
+  } else if constexpr (step == 0) {
+    return *p - T{};  // takes no operation, and leaves the sign of zero
+  } else if constexpr (step == 1) {
+    return load_lanes<T>(p);
+  } else {
+    T a{};
+    for (int n = 0; n < lane_count<T>; ++n) a[n] = p[n * step];
+    return a;
+  }
+}
+
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION void store_lanes(double* p, T const& a) {
   if constexpr (lane_count<T> == 1)
@@ -74,6 +91,24 @@ template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T larger(T const& a, T const& b) {
   return a < b ? b : a;
 }
+
+/// Whether any of some values lies outside an interval, asked for many at once.
+template <class T>
+struct AnyOutside {
+  decltype(T{} < T{}) found{};
+
+  /// A value that is no number lies in every interval.
+  KOKKOS_FORCEINLINE_FUNCTION void add(T const& a, T const& from, T const& to) { found |= (a < from) | (a >= to); }
+  KOKKOS_FORCEINLINE_FUNCTION bool any() const {
+    if constexpr (lane_count<T> == 1) {
+      return found;
+    } else {
+      auto sum = found[0];
+      for (int n = 1; n < lane_count<T>; ++n) sum |= found[n];
+      return sum != 0;
+    }
+  }
+};
 
 template <class T>
 KOKKOS_FORCEINLINE_FUNCTION T square_root(T const& a) {

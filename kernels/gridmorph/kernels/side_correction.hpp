@@ -34,6 +34,7 @@ struct Side {
   std::int32_t chain;
   std::int32_t n_w;  ///< lines on it: n_b for sides 0 and 1, n_a for sides 2 and 3
   Index first;
+  Index across = -1;  ///< where a second copy starts, node (p, w) at across + n_w * p + w; -1: there is none
 };
 
 /// Limits of a chain's blocks and what is known there. Block m lies between junctions m and m + 1.
@@ -62,18 +63,18 @@ struct SideTable {
     double const f = (t_line - t(line + lo)) * per_t(line + lo);
     return (1 - f) * c[line + lo] + f * c[line + lo + 1];
   }
-  /// The largest p < last with t(line + p) <= t_line, found by steps that double away from the guess.
-  KOKKOS_INLINE_FUNCTION int interval(Index line, int last, double t_line, int guess) const {
+  /// The largest p < last with t(line + p * along) <= t_line, found by steps that double away from the guess.
+  KOKKOS_INLINE_FUNCTION int interval(Index line, int last, double t_line, int guess, Index along = 1) const {
     int lo = guess < last ? guess : last - 1, hi = lo + 1;
     int step = 1;
-    if (t(line + lo) <= t_line) {
-      while (hi < last && t(line + hi) <= t_line) {
+    if (t(line + lo * along) <= t_line) {
+      while (hi < last && t(line + hi * along) <= t_line) {
         lo = hi;
         hi = hi + step < last ? hi + step : last;
         step *= 2;
       }
     } else {
-      while (lo > 0 && t(line + lo) > t_line) {
+      while (lo > 0 && t(line + lo * along) > t_line) {
         hi = lo;
         lo = lo - step > 0 ? lo - step : 0;
         step *= 2;
@@ -81,7 +82,7 @@ struct SideTable {
     }
     while (hi - lo > 1) {
       int const mid = (lo + hi) / 2;
-      (t(line + mid) <= t_line ? lo : hi) = mid;
+      (t(line + mid * along) <= t_line ? lo : hi) = mid;
     }
     return lo;
   }

@@ -1,5 +1,5 @@
 // Fills the side arrays of corrected chains: residuals where the side is known, Boolean sums where it is not.
-// Three launches, each over lines of surfaces only; formulas in side_correction.hpp.
+// Four launches, each over lines of surfaces only; formulas in side_correction.hpp.
 #pragma once
 
 #include <gridmorph/kernels/launch.hpp>
@@ -144,6 +144,28 @@ struct SideFill {
     for (int p = 0; p < chain.n_s; ++p) c.set(line + p, c[line + p] - between_edges(p, fraction_across(p)));
   }
 };
+/// Copies sides with their nodes in the other order (Side::across): rows of nodes that run from line to line read
+/// neighbours there. One item per piece of a side.
+template <class MemorySpace>
+struct SidesAcross {
+  static constexpr int lines = 16;  ///< of a piece, from that of its entry on
+
+  Kokkos::View<Chain const*, MemorySpace> chains;
+  SideTable<MemorySpace> sides;
+  Kokkos::View<SideLine const*, MemorySpace> pieces;
+  Field<double> c;
+
+  [[nodiscard]] Index size() const { return Index(pieces.extent(0)); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
+    SideLine const& piece = pieces(item);
+    Side const& side = sides.sides(piece.side);
+    int const n_s = chains(side.chain).n_s, end = piece.w + lines < side.n_w ? piece.w + lines : side.n_w;
+    for (int p = 0; p < n_s; ++p)
+      for (int w = piece.w; w < end; ++w)
+        c.set(side.across + Index(side.n_w) * p + w, c[side.first + Index(n_s) * w + p]);
+  }
+};
+
 /// Sides of the chains in `corrected`. c comes in as the displacements of the known nodes, in the chain's frame; it is
 /// the array that `sides` reads.
 template <class Exec>
@@ -151,6 +173,7 @@ void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memo
                 SideTable<typename Exec::memory_space> const& sides,
                 Kokkos::View<SideLine const*, typename Exec::memory_space> const& side_lines,
                 Kokkos::View<std::int32_t const*, typename Exec::memory_space> const& corrected,
+                Kokkos::View<SideLine const*, typename Exec::memory_space> const& across,
                 Field<double const> const& ends, Field<double> const& c, double const* law_knots = nullptr,
                 SkeletonTurns const& turns = {}) {
   using MemorySpace = typename Exec::memory_space;
@@ -158,6 +181,7 @@ void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memo
          SideResidual<MemorySpace>{chains, sides, side_lines, ends, c, law_knots, turns});
   launch("gridmorph::side_residual::edges", exec, EdgeFill<MemorySpace>{chains, sides, corrected, c});
   launch("gridmorph::side_residual::sides", exec, SideFill<MemorySpace>{chains, sides, side_lines, c});
+  launch("gridmorph::side_residual::across", exec, SidesAcross<MemorySpace>{chains, sides, across, c});
 }
 
 }  // namespace gridmorph::kernels

@@ -81,9 +81,8 @@ struct ItemsByKind {
   Index first[n_volume_kinds + 1] = {};
 };
 
-/// One item per tile of a box, of boxes of a kind. With `Move`, out = baseline + u; `baseline` and `out` may be the
-/// same arrays.
-template <class MemorySpace, class Shape, bool Move, VolumeKind Kind = VolumeKind::any>
+/// One item per tile of a box, of boxes of a kind. `baseline` and `out` may be the same arrays.
+template <class MemorySpace, class Shape, VolumeKind Kind = VolumeKind::any>
 struct VolumePass {
   Kokkos::View<VolumeBox const*, MemorySpace> boxes;
   Kokkos::View<VolumeTerm const*, MemorySpace> terms;
@@ -98,6 +97,7 @@ struct VolumePass {
   VectorArray baseline;
   VectorArray out[most_fields_at_once];
   int n_fields = 1;
+  bool moves = false;  ///< out = baseline + u, otherwise u
   CommonMoves<MemorySpace> common = {};
 
   static constexpr int width = Shape::volume_i;
@@ -106,10 +106,10 @@ struct VolumePass {
 
   /// The same for boxes of another kind.
   template <VolumeKind Other>
-  [[nodiscard]] VolumePass<MemorySpace, Shape, Move, Other> of_kind() const {
-    VolumePass<MemorySpace, Shape, Move, Other> other{boxes,  terms,    first_item, chains,   matrices,
-                                                      sides,  t,        law_knots,  ends,     residuals,
-                                                      turned, baseline, {},         n_fields, common};
+  [[nodiscard]] VolumePass<MemorySpace, Shape, Other> of_kind() const {
+    VolumePass<MemorySpace, Shape, Other> other{boxes, terms,     first_item, chains,    matrices, sides,
+                                                t,     law_knots, ends,       residuals, turned,   baseline,
+                                                {},    n_fields,  moves,      common};
     for (int f = 0; f < n_fields; ++f) other.out[f] = out[f];
     return other;
   }
@@ -129,7 +129,7 @@ struct VolumePass {
         local <= 0xffffffffLL ? first_node<std::uint32_t>(box, local) : first_node<Index>(box, local);
     int const n = smaller(width, box.n[0] - i);
     int const j1 = smaller(j0 + Shape::volume_j, box.n[1]), k1 = smaller(k0 + Shape::volume_k, box.n[2]);
-    bool const is_fused = Shape::host && can_fuse(box, n_terms);
+    bool const is_fused = Shape::host && has_plain_terms(box, n_terms);
     for (int k = k0; k < k1; ++k)
       for (int j = j0; j < j1; ++j)
         for (int f = 0; f < n_fields; ++f) {
@@ -161,14 +161,15 @@ struct VolumePass {
   KOKKOS_INLINE_FUNCTION static int smaller(int a, int b) { return a < b ? a : b; }
 
   /// Whether the rows of a box have one or two terms of the kinds that fused_row.hpp has.
-  KOKKOS_INLINE_FUNCTION bool can_fuse(VolumeBox const& box, int n_terms) const {
+  KOKKOS_INLINE_FUNCTION bool has_plain_terms(VolumeBox const& box, int n_terms) const {
     if (n_terms < 1 || n_terms > 2 || (box.n_swept > 0 && !common.leaves_out)) return false;
     for (int m = 0; m < n_terms; ++m) {
       VolumeTerm const& term = terms(box.first_term + m);
       Chain const& chain = chains(term.chain);
-      if (!is_plain(chain, term) || !kernels::can_fuse(chain.law, term.end_stride[0])) return false;
+      if (!is_plain(chain, term) || !can_fuse(chain.law, term.end_stride[0])) return false;
     }
-    return true;
+    VolumeTerm const &first = terms(box.first_term), &last = terms(box.first_term + n_terms - 1);
+    return n_terms == 1 || can_fuse_both(first.end_stride[0], chains(last.chain).law, last.end_stride[0]);
   }
   KOKKOS_INLINE_FUNCTION static bool is_plain(Chain const& chain, VolumeTerm const& term) {
     return Kind == VolumeKind::plain || (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none);
@@ -177,17 +178,22 @@ struct VolumePass {
   /// All of a row in one loop, where its arrays are plain ones of doubles; otherwise nothing is done.
   KOKKOS_INLINE_FUNCTION bool write_at_once(VolumeBox const& box, int n_terms, int f, int i, int j, int k, int n,
                                             Index node) const {
-    FusedRow row{nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, n};
-    if (!out[f].plain_row(node, row.x, row.y, row.z)) return false;
-    if (Move && !baseline.plain_row(node, row.from_x, row.from_y, row.from_z)) return false;
+    FusedRow row;
+    if (!arrays_of_row(node, out[f], row)) return false;
     VolumeTerm const &a = terms(box.first_term), &b = terms(box.first_term + n_terms - 1);
     LineLaw const law = chains(a.chain).law;
     if (n_terms == 1)
-      write_fused<Move>(row, law, ends_of_row(box, a, f, i, j, k, n));
+      write_fused(row, moves, law, ends_of_row(box, a, f, i, j, k, n));
     else
-      write_fused<Move>(row, law, ends_of_row(box, a, f, i, j, k, n), chains(b.chain).law,
-                        ends_of_row(box, b, f, i, j, k, n));
+      write_fused(row, moves, law, ends_of_row(box, a, f, i, j, k, n), chains(b.chain).law,
+                  ends_of_row(box, b, f, i, j, k, n));
     return true;
+  }
+
+  /// False where one of its arrays is no plain one of doubles.
+  KOKKOS_INLINE_FUNCTION bool arrays_of_row(Index node, VectorArray const& to, FusedRow& row) const {
+    return to.plain_row(node, row.x, row.y, row.z) &&
+           (!moves || baseline.plain_row(node, row.from_x, row.from_y, row.from_z));
   }
 
   KOKKOS_INLINE_FUNCTION RowEnds ends_of_row(VolumeBox const& box, VolumeTerm const& term, int f, int i, int j, int k,
@@ -262,64 +268,37 @@ struct VolumePass {
   /// so that the compiler sees one line for the whole row, or unit stride.
   template <bool Add>
   KOKKOS_INLINE_FUNCTION void interpolate(Chain const& chain, RowEnds const& row, Row& u) const {
-    with_step(row.step, [&](auto step) {
-      switch (chain.law) {
-        case LineLaw::linear:
-          return between_ends<Add>(
-              row, step, [](double t) { return t; }, u);
-        case LineLaw::c1:
-          return between_ends<Add>(
-              row, step, [](double t) { return t * t * (3 - 2 * t); }, u);
-        case LineLaw::c2:
-        case LineLaw::cubic:
-        case LineLaw::table: return interpolate_by_asked_law<Add>(chain, row, u);
-        case LineLaw::constant:
-          put<Add>(
-              row.n, [&](int w) { return row.e.x[row.lower + w * step]; }, u.x);
-          put<Add>(
-              row.n, [&](int w) { return row.e.y[row.lower + w * step]; }, u.y);
-          put<Add>(
-              row.n, [&](int w) { return row.e.z[row.lower + w * step]; }, u.z);
-      }
-    });
+    bool const done = with_law(chain.law, [&](auto const& weight) { put<Add>(row, weight, u); });
+    if (!done) interpolate_by_asked_law<Add>(chain, row, u);
   }
   /// The laws that chains have where somebody asks for them.
   template <bool Add>
   GRIDMORPH_CALLED_ON_HOST KOKKOS_FUNCTION void interpolate_by_asked_law(Chain const& chain, RowEnds const& row,
                                                                          Row& u) const {
-    with_step(row.step, [&](auto step) {
-      if (chain.law == LineLaw::c2) {
-        between_ends<Add>(
-            row, step, [](double t) { return law_weight(LineLaw::c2, t); }, u);
-      } else if (chain.law == LineLaw::cubic) {
-        double const a = chain.slope[0], b = chain.slope[1];
-        between_ends<Add>(
-            row, step, [a, b](double t) { return cubic_weight(a, b, t); }, u);
-      } else {
-        double const* const knots = law_knots + chain.first_knot;
-        int const n = chain.n_intervals;
-        between_ends<Add>(
-            row, step, [knots, n](double t) { return table_weight(knots, n, t); }, u);
-      }
-    });
-  }
-  template <bool Add, class Step, class Weight>
-  KOKKOS_INLINE_FUNCTION static void between_ends(RowEnds const& row, Step step, Weight const& weight, Row& u) {
-    double const *const x0 = row.e.x + row.lower, *const y0 = row.e.y + row.lower, *const z0 = row.e.z + row.lower;
-    double const *const x1 = x0 + row.section, *const y1 = y0 + row.section, *const z1 = z0 + row.section;
-    for (int w = 0; w < row.n; ++w) {
-      double const f = weight(row.t[w]);
-      double const x = x0[w * step] + f * (x1[w * step] - x0[w * step]);
-      double const y = y0[w * step] + f * (y1[w * step] - y0[w * step]);
-      double const z = z0[w * step] + f * (z1[w * step] - z0[w * step]);
-      u.x[w] = Add ? u.x[w] + x : x;
-      u.y[w] = Add ? u.y[w] + y : y;
-      u.z[w] = Add ? u.z[w] + z : z;
+    if (chain.law == LineLaw::c2) {
+      put<Add>(row, LawWeight<LineLaw::c2>(), u);
+    } else if (chain.law == LineLaw::cubic) {
+      double const a = chain.slope[0], b = chain.slope[1];
+      put<Add>(
+          row, [a, b](double t) { return cubic_weight(a, b, t); }, u);
+    } else {
+      double const* const knots = law_knots + chain.first_knot;
+      int const n = chain.n_intervals;
+      put<Add>(
+          row, [knots, n](double t) { return table_weight(knots, n, t); }, u);
     }
   }
-  template <bool Add, class Value>
-  KOKKOS_INLINE_FUNCTION static void put(int n, Value const& value, double* u) {
-    for (int w = 0; w < n; ++w) u[w] = Add ? u[w] + value(w) : value(w);
+  template <bool Add, class Weight>
+  KOKKOS_INLINE_FUNCTION static void put(RowEnds const& row, Weight const& weight, Row& u) {
+    with_step(row.step, [&](auto step) {
+      LineTerm const term(row, weight, step);
+      for (int w = 0; w < row.n; ++w) {
+        Vec3 const v = term.at(w);
+        u.x[w] = Add ? u.x[w] + v.x : v.x;
+        u.y[w] = Add ? u.y[w] + v.y : v.y;
+        u.z[w] = Add ? u.z[w] + v.z : v.z;
+      }
+    });
   }
   template <class Body>
   KOKKOS_INLINE_FUNCTION static void with_step(Index step, Body const& body) {
@@ -353,7 +332,10 @@ struct VolumePass {
   /// The sum goes through the row: baseline and destination may be the same arrays, which would keep the compiler from
   /// vectorising a loop that reads one and writes the other.
   KOKKOS_INLINE_FUNCTION void write(Index node, int n, Row& u, VectorArray const& to) const {
-    if constexpr (Move)
+    FusedRow row;
+    if (Shape::host && arrays_of_row(node, to, row))
+      return write_row(row, moves, n, [&](int w) { return Vec3{u.x[w], u.y[w], u.z[w]}; });
+    if (moves)
       baseline.with_row(node, [&](auto const& x) {
         add_component(n, x.x, x.stride, u.x);
         add_component(n, x.y, x.stride, u.y);
@@ -379,9 +361,9 @@ struct VolumePass {
   }
 };
 /// All nodes inside the boxes that the pass was made for.
-template <class Exec, class Shape, bool Move>
+template <class Exec, class Shape>
 void pass_volume(Exec const& exec, ItemsByKind const& items,
-                 VolumePass<typename Exec::memory_space, Shape, Move> const& pass) {
+                 VolumePass<typename Exec::memory_space, Shape> const& pass) {
   static_assert(std::is_same_v<Shape, TileShape<Exec>>, "the tiles of another execution space");
   if constexpr (Shape::host) {
     launch("gridmorph::volume", exec, 0, items.first[n_volume_kinds], pass);

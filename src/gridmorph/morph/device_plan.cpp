@@ -81,6 +81,58 @@ void join_sides(gridmorph::SideTables const& from, Shift const& shift, gridmorph
   append(to.section, from.section);
 }
 
+/// The sides of a stage's chains, numbered in the joined tables, that rows of the volume run across, from one line to
+/// the next.
+std::vector<std::int32_t> sides_run_across(Stage const& stage, Shift const& shift) {
+  std::vector<std::int32_t> out;
+  for (VolumePart const& part : stage.volume) {
+    kernels::Chain const& chain = stage.lines.chains[part.term.chain];
+    if (chain.first_side < 0) continue;
+    for (int side = 0; side < 4; ++side)
+      if ((side < 2 ? part.term.b : part.term.a)[1] != 0 && chain.side_matters(side))
+        out.push_back(shift.side + chain.first_side + side);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// Makes room for second copies of sides (kernels::Side::across) behind all that there is, and their parameters; the
+/// work that fills them.
+std::vector<kernels::SideLine> add_copies_across(std::vector<std::int32_t> const& copied, JoinedTables& to) {
+  std::vector<kernels::SideLine> pieces;
+  for (std::int32_t const number : copied) {
+    kernels::Side& side = to.sides.sides[number];
+    int const n_s = to.lines.chains[side.chain].n_s;
+    side.across = Index(to.sides.t.size());
+    for (int p = 0; p < n_s; ++p)
+      for (int w = 0; w < side.n_w; ++w) {
+        double const t = to.sides.t[side.first + Index(n_s) * w + p];  // not from the array that grows
+        to.sides.t.push_back(t);
+      }
+    for (int w = 0; w < side.n_w; w += kernels::SidesAcross<Kokkos::HostSpace>::lines) pieces.push_back({number, w});
+  }
+  return pieces;
+}
+
+/// Per node of a side 1 / (t(next) - t) along its line, 0 where they are equal.
+std::vector<double> inverse_steps(JoinedTables const& joined) {
+  std::vector<double> const& t = joined.sides.t;
+  std::vector<double> out(t.size(), 0);
+  auto const fill = [&](Index first, int n, Index step) {
+    for (Index at = first; at < first + (n - 1) * step; at += step)
+      if (double const rise = t[at + step] - t[at]; rise > 0) out[at] = 1 / rise;
+  };
+  for (kernels::Side const& side : joined.sides.sides) {
+    int const n_s = joined.lines.chains[side.chain].n_s;
+    for (int w = 0; w < side.n_w; ++w) {
+      fill(side.first + Index(n_s) * w, n_s, 1);
+      if (side.across >= 0) fill(side.across + w, n_s, side.n_w);
+    }
+  }
+  return out;
+}
+
 std::vector<kernels::SkeletonSweep> shifted(std::vector<kernels::SkeletonSweep> sweeps, Shift const& shift) {
   for (kernels::SkeletonSweep& sweep : sweeps) {
     sweep.chain += shift.chain;
@@ -232,6 +284,9 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     collect_parts(stage.volume, shift, of_box);
     join_lines(stage.lines, shift, joined.lines);
     join_sides(stage.sides, shift, joined.sides);
+    std::vector<kernels::SideLine> across;
+    if constexpr (Shape::host) across = add_copies_across(sides_run_across(stage, shift), joined);
+    device.across = table(exec, across, "sides_across");
     stages.push_back(std::move(device));
     // The host lists of this stage end here, and uploads may still read them.
     compat::fence(exec, "gridmorph::Morpher (host tables of a stage may go)");
@@ -275,9 +330,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   sides.sides = table(exec, joined.sides.sides, "sides");
   sides.junctions = table(exec, joined.sides.junctions, "junctions");
   sides.t = table(exec, joined.sides.t, "side_parameters");
-  std::vector<double> per_t(joined.sides.t.size(), 0);
-  for (std::size_t n = 0; n + 1 < per_t.size(); ++n)
-    if (double const step = joined.sides.t[n + 1] - joined.sides.t[n]; step > 0) per_t[n] = 1 / step;
+  std::vector<double> const per_t = inverse_steps(joined);
   sides.per_t = table(exec, per_t, "side_parameters::inverse_steps");
   sides.section = table(exec, joined.sides.section, "section_parameters");
   rotations = table(exec, plan.rotations, "rotations");

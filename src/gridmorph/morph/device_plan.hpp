@@ -70,6 +70,7 @@ struct DeviceStage {
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Kokkos::View<kernels::SideLine*, Memory> side_lines;
   Kokkos::View<std::int32_t*, Memory> corrected;
+  Kokkos::View<kernels::SideLine*, Memory> across;           ///< pieces of sides that rows run across
   bool turns = false;                                        ///< whether rotations come to its ends
   Kokkos::View<kernels::NearFieldLine*, Memory> near_field;  ///< lines that turn with their wall
   Index first_end_value = 0, n_end_values = 0;
@@ -133,7 +134,7 @@ struct DevicePlan {
   using Shape = kernels::TileShape<Exec>;
   using Copy = kernels::CopyNodes<Memory, Shape::row>;
   using Sweep = kernels::SweepSkeleton<Memory, Shape::row, false>;
-  using Volume = kernels::VolumePass<Memory, Shape, false>;
+  using Volume = kernels::VolumePass<Memory, Shape>;
   using Parameters = kernels::LineParameters<Memory, Shape::lines>;
 
   kernels::LineTable<Memory> lines;

@@ -182,12 +182,13 @@ void Run::freeze_into_plan(Guarded& guarded, std::vector<Moment> const& moments)
   guarded.json["frozen_guard"] = frozen_guard_json(map);
 }
 
-void Run::measure() {
+void Run::measure(bool verdict) {
   QualityWanted wanted = wanted_;
+  wanted.fast = wanted.fast || verdict;
   wanted.morphed = &result_.morphed;
   if (case_file_.output_options.quality) {
     wanted.fields = &result_.fields.cells;
-  } else if (keep_ && !wanted_.fast) {
+  } else if (keep_ && !wanted.fast) {
     wanted.measures.assign(page_measures.begin(), page_measures.end());
     wanted.fields = &result_.measures;
   }

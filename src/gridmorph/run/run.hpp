@@ -64,8 +64,8 @@ class Run {
   /// Makes the meshes of these moments to see where any of them loses its shape: smoothing is then the same in all of
   /// them.
   void freeze_guard(std::vector<Moment> const& moments);
-  /// Quality of the result, and fields on the way.
-  void measure();
+  /// Quality of the result, and fields on the way. verdict: that is all that is wanted.
+  void measure(bool verdict = false);
   /// Where the result has cells inverted: the same motion in 2, 3, ... steps, up to [guard] steps, until none is; the
   /// best stays the result.
   TriedSteps try_steps();

@@ -68,7 +68,10 @@ class Sequence {
         file_(file),
         console_(console),
         page_(case_file.output_options.page ? std::make_optional<RunPage>(case_file, typed) : std::nullopt),
-        run_(case_file, file, console) {
+        run_(case_file, file, console),
+        // Steps are compared by what a verdict holds. Pages and files show all measures of all steps.
+        verdicts_(case_file.guard.quality == QualityMode::automatic && !page_ && !case_file.output_options.quality &&
+                  !wants_verdict(case_file, run_.mesh().n_cells())) {
     for (int step = 0; step < options_.steps; ++step) moments_.push_back(options_.moment(step));
   }
 
@@ -120,7 +123,7 @@ class Sequence {
   bool make_again(Moment const& moment) {
     if (!case_file_.guard.retry && !inverted_) return false;
     (void)run_.morph(&moment);
-    run_.measure();
+    run_.measure(verdicts_);
     return true;
   }
 
@@ -143,7 +146,7 @@ class Sequence {
     part_.lap();
     relaxed_ = std::max(relaxed_, run_.morph(&moment).before);
     add_time(run_.times, "morph" + count, part_.lap(), false);
-    run_.measure();
+    run_.measure(verdicts_);
     if (!case_file_.guard.freeze)  // steps would be beside the plan
       if (auto const tried = run_.try_steps(); !tried.text.empty()) stepped_[step] = tried.text;
     add_time(run_.times, "quality" + count, part_.lap(), false);
@@ -176,9 +179,13 @@ class Sequence {
   void look_at_worst() {
     written_ = !inverted_ || case_file_.guard.write_inverted;
     (void)run_.morph(&moments_[sequence_.worst]);
-    if (!written_ || page_) {  // what is said of the worst cell needs it as it came out in the end
+    if (verdicts_ || !written_ || page_) {  // what is said of the worst cell needs it as it came out in the end
       run_.measure();
       if (!case_file_.guard.freeze) (void)run_.try_steps();
+    }
+    if (verdicts_) {
+      worst_quality_ = run_.quality();
+      run_.times.push_back({"quality of the worst", part_.lap(), false});
     }
     add_guard_notes();
     document_ = run_.document(worst_quality_, guarded_);
@@ -231,6 +238,7 @@ class Sequence {
   Console& console_;
   std::optional<RunPage> page_;
   Run run_;
+  bool const verdicts_;  ///< is what of the steps is measured; of the worst all in the end
   std::vector<Moment> moments_;
   Stopwatch part_;
   Guarded guarded_;

@@ -10,10 +10,10 @@ namespace gridmorph::stages {
 inline Baseline read(kernels::Field<double> const& f) { return {f.x, f.y, f.z, f.stride}; }
 
 /// first: the first of the fields to be written, neighbours in the workspace; the caller adds where they go.
-template <bool Move, class Exec>
-kernels::VolumePass<typename Exec::memory_space, kernels::TileShape<Exec>, Move> volume_pass(
-    detail::DevicePlan<Exec> const& plan, kernels::VectorArray const& x, StageField<Exec> const& first) {
-  kernels::VolumePass<typename Exec::memory_space, kernels::TileShape<Exec>, Move> out{
+template <class Exec>
+kernels::VolumePass<typename Exec::memory_space, kernels::TileShape<Exec>> volume_pass(
+    detail::DevicePlan<Exec> const& plan, kernels::VectorArray const& x, StageField<Exec> const& first, bool moves) {
+  kernels::VolumePass<typename Exec::memory_space, kernels::TileShape<Exec>> out{
       plan.boxes.entries,
       plan.terms,
       plan.boxes.first_item,
@@ -27,7 +27,8 @@ kernels::VolumePass<typename Exec::memory_space, kernels::TileShape<Exec>, Move>
       {plan.turns.read_ends(first.number, first.of), plan.turns.ends_stride()},
       x,
       {},
-      0};
+      0,
+      moves};
   if (plan.common) out.common = plan.common->of(first);
   return out;
 }

@@ -248,7 +248,7 @@ class LineSweep : OnSkeleton<Exec> {
     if (stage.side_lines.extent(0) > 0) {
       this->copy("gridmorph::side_residual::known", exec, stage.gathers, f.skeleton, f.residuals);
       kernels::fill_sides(exec, this->plan().lines.chains, this->sides(f), stage.side_lines, stage.corrected,
-                          read(f.ends), f.residuals, this->plan().law_knots.data(),
+                          stage.across, read(f.ends), f.residuals, this->plan().law_knots.data(),
                           this->plan().turns.of_skeleton(f.number, f.of));
     }
     this->template sweep<false>(exec, stage.sweeps, f);
@@ -291,7 +291,7 @@ class AddCommon : OnSkeleton<Exec> {
  private:
   /// Nodes inside pieces, before.
   void keep_nodes(Exec const& exec, StageField<Exec> const& f) const {
-    auto volume = volume_pass<false>(this->plan(), f.baseline, f);
+    auto volume = volume_pass(this->plan(), f.baseline, f, false);
     volume.common.leaves_out = true;
     volume.out[volume.n_fields++] = VectorView<typename Exec::memory_space>(this->plan().common->before).array();
     kernels::pass_volume(exec, this->plan().volume_items, volume);

@@ -56,7 +56,7 @@ class WriteBlocks {
   void write_at_once(Exec const& exec, kernels::VectorArray const& x, std::span<StageField<Exec> const> fields,
                      std::span<Out const> out) const {
     auto const& plan = *tables_;
-    auto volume = volume_pass<Move>(plan, x, fields.front());
+    auto volume = volume_pass(plan, x, fields.front(), Move);
     for (Out const& field : out) {
       kernels::write_skeleton_nodes<Move>(exec, plan.skeleton_nodes, plan.rotations,
                                           read(fields[volume.n_fields].skeleton), field.array(), x);

@@ -29,11 +29,10 @@ class MeridionalSides {
         frame_.origin + dot(mesh.coordinates[nodes.front()] - frame_.origin, frame_.direction) * frame_.direction;
     plane_.dimension = 2;
     plane_.source = mesh.source;
-    std::vector<Vec3> at;
     double size = 0;
     for (Index32 const n : nodes) {
-      at.push_back(place(mesh.coordinates[n]));
-      size = std::max(size, distance(at.back(), at.front()));
+      place_.push_back(place(mesh.coordinates[n]));
+      size = std::max(size, distance(place_.back(), place_.front()));
     }
     int const copies = is_plane_ ? 2 : 1;
     Vec3 const across = leads(0) ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
@@ -41,7 +40,7 @@ class MeridionalSides {
     plane_.coordinates = Coordinates(Index(copies) * n_);
     for (int copy = 0; copy < copies; ++copy)
       for (Index32 k = 0; k < n_; ++k)
-        plane_.coordinates.set(copy * n_ + k, at[k] + (is_plane_ ? (2 * copy - 1) * size : 0) * across);
+        plane_.coordinates.set(copy * n_ + k, place_[k] + (is_plane_ ? (2 * copy - 1) * size : 0) * across);
     for (Index f = 0; f < topology.boundary.size(); ++f) {
       std::vector<Index32> corners;
       for (Index32 const n : topology.boundary.nodes[f]) corners.push_back(of_node[graph.representative[n]]);
@@ -57,6 +56,8 @@ class MeridionalSides {
     kernels::RowBasis const basis = frame_.basis(x);
     return {leads(0) ? dot(d, basis.along) : 0, leads(1) ? dot(d, basis.away) : 0, 0};
   }
+  /// That of node k of the sides.
+  [[nodiscard]] Vec3 const& place_of_side(Index32 k) const { return place_[k]; }
   [[nodiscard]] std::vector<Location> locate(HostInstance const& host, std::vector<Vec3> const& places) const {
     return gridmorph::locate(host, plane_, places);
   }
@@ -98,6 +99,7 @@ class MeridionalSides {
   kernels::RowFrame frame_;
   bool is_plane_;
   Index32 n_;
+  std::vector<Vec3> place_;
   Mesh plane_;
 };
 
@@ -128,8 +130,7 @@ struct MeridionalPlaces {
 /// Whether sides do different things where they have the same meridional position, as in a wheel whose passages differ.
 /// of_node: numbers of the nodes of the sides, `components` what they do.
 bool sides_differ(MeridionalSides const& sides, MeridionalPlaces const& at, InterpolationOperator const& rows,
-                  std::vector<Index32> const& of_node, std::vector<Vec3> const& place_of_side,
-                  std::vector<Vec3> const& components) {
+                  std::vector<Index32> const& of_node, std::vector<Vec3> const& components) {
   constexpr double alike = 1e-2;
   double largest = 0;
   for (Vec3 const& c : components) largest = std::max(largest, norm(c));
@@ -139,7 +140,7 @@ bool sides_differ(MeridionalSides const& sides, MeridionalPlaces const& at, Inte
     double const same_place = 1e-6 * sides.size(at.found[r]);
     for (Index k = rows.first[r]; k < rows.first[r + 1]; ++k) {
       Index32 const other = rows.item[k];
-      if (distance(at.place[r], place_of_side[other]) <= same_place &&
+      if (distance(at.place[r], sides.place_of_side(other)) <= same_place &&
           distance(components[own], components[other]) > alike * largest)
         return true;
     }
@@ -222,11 +223,10 @@ void UnstructuredPlanner::find_passage() {
     nodes.push_back(plan.known[s]);
   }
   MeridionalSides const sides(mesh_, topology_, out_.graph, passage.frame, of_node, nodes);
-  std::vector<Vec3> place_of_side, components;
+  std::vector<Vec3> components;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    Vec3 const x = mesh_.coordinates[nodes[k]];
-    place_of_side.push_back(sides.place(x));
-    components.push_back(passage.frame.basis(x).components((*given)[passage.slots[k]]));
+    kernels::RowBasis const basis = passage.frame.basis(mesh_.coordinates[nodes[k]]);
+    components.push_back(basis.components((*given)[passage.slots[k]]));
   }
   bool const do_nothing = std::all_of(components.begin(), components.end(), [](Vec3 const& c) { return c == Vec3{}; });
   if (sides.empty() || do_nothing) return;
@@ -245,7 +245,7 @@ void UnstructuredPlanner::find_passage() {
   for (std::size_t k = 0; k < all.node.size(); ++k)
     if (drives_[all.node[k]] != 0 && all.found[k].distance > 0.5 * sides.size(all.found[k])) return;
   passage.nodes = sides.rows(host_, all.found, all.node);
-  if (sides_differ(sides, all, passage.nodes, of_node, place_of_side, components)) return;
+  if (sides_differ(sides, all, passage.nodes, of_node, components)) return;
   MeridionalPlaces walls;
   for (Index32 const n : plan.driving) {
     walls.node.push_back(n);
