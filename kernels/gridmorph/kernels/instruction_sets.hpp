@@ -8,8 +8,10 @@
 
 #include <gridmorph/kernels/grid_line.hpp>
 
-// A build for a machine that has the wider set needs no second copy, and other processors have none.
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(__CUDACC__) && !defined(__HIPCC__)
+// A build for a machine that has the wider set needs no second copy, and other processors have none. Sanitizers, which
+// take long to compile, go without by GRIDMORPH_ONE_INSTRUCTION_SET.
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(__CUDACC__) && !defined(__HIPCC__) && \
+    !defined(GRIDMORPH_ONE_INSTRUCTION_SET)
 #define GRIDMORPH_TWO_INSTRUCTION_SETS 1
 #include <cstdlib>
 #endif
