@@ -7,6 +7,7 @@
 #include <gridmorph/kernels/launch.hpp>
 #include <gridmorph/morph/device_plan.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
+#include <gridmorph/morph/stages/block_volume.hpp>
 #include <gridmorph/plan/prepare.hpp>
 
 #include <functional>
@@ -60,23 +61,12 @@ struct Volume {
                    NodeArrays<typename Exec::memory_space> const& x) const {
     using Memory = typename Exec::memory_space;
     auto const d = device_plan(exec, prepared.plan(), x.read());
-    VectorView<Memory> const field(x);
-    kernels::TurnedEndsBatch const turned{d->turns.read_ends(0, 0), d->turns.ends_stride()};
-    kernels::VolumePass<Memory, kernels::TileShape<Exec>> const kernel{d->boxes.entries,
-                                                                       d->terms,
-                                                                       d->boxes.first_item,
-                                                                       d->lines.chains,
-                                                                       d->rotations,
-                                                                       d->sides,
-                                                                       d->t.data(),
-                                                                       d->law_knots.data(),
-                                                                       d->ends.read(),
-                                                                       d->residuals.read(),
-                                                                       turned,
-                                                                       field.array(),
-                                                                       {field.array()},
-                                                                       1,
-                                                                       true};
+    VectorView<Memory> const nodes(x);
+    stages::StageField<Exec> field;
+    field.ends = d->ends.batch()[0];
+    field.residuals = d->residuals.batch()[0];
+    auto kernel = stages::volume_pass(*d, nodes.array(), field, true);
+    kernel.out[kernel.n_fields++] = nodes.array();
     Touched const touched = touched_by_volume(prepared.plan());
     return {[=] { kernels::pass_volume(exec, d->volume_items, kernel); }, touched.nodes,
             48 + 8 * double(touched.parameters) / double(touched.nodes)};

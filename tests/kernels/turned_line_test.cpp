@@ -100,15 +100,11 @@ struct Lines {
     return moved;
   }
   [[nodiscard]] std::vector<Vec3> row() const {
-    kernels::VectorRow<8> at{}, sum{};
-    for (int w = 0; w < n; ++w) {
-      at.x[w] = x[w].x;
-      at.y[w] = x[w].y;
-      at.z[w] = x[w].z;
-    }
-    kernels::TurnedRow<8>{ends, chain, 0, t.data(), n}.add_to(Index(1), at, sum);
-    std::vector<Vec3> out;
-    for (int w = 0; w < n; ++w) out.push_back({sum.x[w], sum.y[w], sum.z[w]});
+    std::vector<Vec3> out(n);
+    kernels::RowEnds const row{{nullptr, nullptr, nullptr}, 0, chain.section_size(), 1, t.data(), n};
+    kernels::with_turns(ends, chain, row, kernels::Constant<1>(), [&](auto const& turn) {
+      for (int w = 0; w < n; ++w) out[w] += turn.at(w, x[w]);
+    });
     return out;
   }
 };
@@ -170,13 +166,13 @@ TEST(FarLaw, FallsFromOneToNoneWithoutASlopeAtItsStart) {
   kernels::Chain chain{};
   chain.turn_reach = 30;
   chain.turn_scale = 1 / (kernels::far_growth(30) - 1);
-  EXPECT_EQ(kernels::far_weight(chain, 0), 1);
-  EXPECT_NEAR(kernels::far_weight(chain, 1), 0, 1e-15);
-  EXPECT_NEAR(kernels::far_weight(chain, 1e-6), 1, 1e-9);
-  for (double t = 0; t < 1; t += 0.01) EXPECT_GT(kernels::far_weight(chain, t), kernels::far_weight(chain, t + 0.01));
+  EXPECT_EQ(kernels::FarLaw(chain)(0), 1);
+  EXPECT_NEAR(kernels::FarLaw(chain)(1), 0, 1e-15);
+  EXPECT_NEAR(kernels::FarLaw(chain)(1e-6), 1, 1e-9);
+  for (double t = 0; t < 1; t += 0.01) EXPECT_GT(kernels::FarLaw(chain)(t), kernels::FarLaw(chain)(t + 0.01));
   // r da/dr of the turn is even: between two and twenty sizes of the body it changes by less than a factor of two.
   auto const shear = [&](double t) {
-    return t * (kernels::far_weight(chain, t - 1e-5) - kernels::far_weight(chain, t + 1e-5));
+    return t * (kernels::FarLaw(chain)(t - 1e-5) - kernels::FarLaw(chain)(t + 1e-5));
   };
   double least = HUGE_VAL, most = 0;
   for (double t = 2.0 / 30; t < 20.0 / 30; t += 0.01) {

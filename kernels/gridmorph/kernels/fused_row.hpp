@@ -87,11 +87,11 @@ KOKKOS_FORCEINLINE_FUNCTION bool with_law(LineLaw law, Body const& body) {
 
 /// Whether rows of a chain have a term that can be fused.
 KOKKOS_INLINE_FUNCTION bool can_fuse(LineLaw law, Index step) {
-  return (law == LineLaw::linear || law == LineLaw::c1 || law == LineLaw::constant) && (step == 0 || step == 1);
+  return with_law(law, [](auto const&) {}) && (step == 0 || step == 1);
 }
 
-/// Whether it can be so with a second one. Two lines that both run along the row, and second terms that are constant
-/// along their line, are none that plans have, and a loop less for each law.
+/// Whether the sum of two such terms can be. No plan has lines of two chains along one row, nor a second term that is
+/// constant along its line: there are no loops for them.
 KOKKOS_INLINE_FUNCTION bool can_fuse_both(Index step, LineLaw second, Index second_step) {
   return second != LineLaw::constant && (step != 0 || second_step != 0);
 }

@@ -7,26 +7,21 @@
 #pragma once
 
 #include <gridmorph/kernels/rotation_gradient.hpp>
+#include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/turned_row.hpp>
 
 namespace gridmorph::kernels {
 
-/// turn_weights() of one of a chain's ends, for a row: one loop per law, so that none has a choice in it. All laws of
-/// two rotations are the same from both ends.
+/// turn_weights() of one of a chain's ends, for a row: one loop per law, so that none has a choice in it.
 KOKKOS_FORCEINLINE_FUNCTION void fill_turn_weights(Chain const& chain, unsigned end, double const* t, int n,
                                                    double* f) {
-  double const from = end, sign = end == 0 ? 1 : -1;
   auto const fill = [&](auto const& law) {
     for (int w = 0; w < n; ++w) f[w] = law(t[w]);
   };
   if (chain.turn == TurnLaw::near_field)
     fill([=](double at) { return end == 0 ? near_field_weight(at) : 1 - near_field_weight(at); });
-  else if (chain.turn == TurnLaw::far)
-    fill([&](double at) { return far_weight(chain, from + sign * at); });
-  else if (chain.turn == TurnLaw::square)
-    fill([=](double at) { return (1 - from - sign * at) * (1 - from - sign * at); });
   else
-    fill([=](double at) { return 1 - law_weight(LineLaw::c1, from + sign * at); });
+    with_turn_law(chain, end, fill);
 }
 
 /// The gradients of line ends, in arrays as those of TurnedEnds, pivots unused.

@@ -42,9 +42,11 @@ KOKKOS_INLINE_FUNCTION double far_growth(double s) {
   using std::sqrt;
   return sqrt(sqrt(sqrt(1 + s * s / (1 + s))));
 }
-KOKKOS_INLINE_FUNCTION double far_weight(Chain const& chain, double t) {
-  return 1 - chain.turn_scale * (far_growth(chain.turn_reach * t) - 1);
-}
+struct FarLaw {
+  double scale, reach;
+  KOKKOS_INLINE_FUNCTION explicit FarLaw(Chain const& chain) : scale(chain.turn_scale), reach(chain.turn_reach) {}
+  KOKKOS_INLINE_FUNCTION double operator()(double t) const { return 1 - scale * (far_growth(reach * t) - 1); }
+};
 /// The weight of the wall's rotation at t in the near field, without a slope at the wall, so that the first cells turn
 /// with it whole.
 KOKKOS_INLINE_FUNCTION double near_field_weight(double t) {
@@ -60,7 +62,7 @@ KOKKOS_INLINE_FUNCTION TurnWeights turn_weights(Chain const& chain, double t) {
     case TurnLaw::square: return {(1 - t) * (1 - t), t * t};
     case TurnLaw::c1:
     case TurnLaw::common: return {1 - law_weight(LineLaw::c1, t), 1 - law_weight(LineLaw::c1, 1 - t)};
-    case TurnLaw::far: return {far_weight(chain, t), far_weight(chain, 1 - t)};
+    case TurnLaw::far: return {FarLaw(chain)(t), FarLaw(chain)(1 - t)};
     case TurnLaw::none: return {0, 0};
   }
   return {0, 0};

@@ -129,7 +129,7 @@ struct VolumePass {
         local <= 0xffffffffLL ? first_node<std::uint32_t>(box, local) : first_node<Index>(box, local);
     int const n = smaller(width, box.n[0] - i);
     int const j1 = smaller(j0 + Shape::volume_j, box.n[1]), k1 = smaller(k0 + Shape::volume_k, box.n[2]);
-    bool const is_fused = Shape::host && has_plain_terms(box, n_terms);
+    bool const is_fused = Shape::host && (has_plain_terms(box, n_terms) || turns_near_wall(box, n_terms));
     for (int k = k0; k < k1; ++k)
       for (int j = j0; j < j1; ++j)
         for (int f = 0; f < n_fields; ++f) {
@@ -175,11 +175,22 @@ struct VolumePass {
     return Kind == VolumeKind::plain || (chain.first_side < 0 && term.matrix < 0 && chain.turn == TurnLaw::none);
   }
 
+  /// Whether the rows of a box are those of a near field that turns.
+  KOKKOS_INLINE_FUNCTION bool turns_near_wall(VolumeBox const& box, int n_terms) const {
+    if (n_terms != 1 || (box.n_swept > 0 && !common.leaves_out)) return false;
+    VolumeTerm const& term = terms(box.first_term);
+    Chain const& chain = chains(term.chain);
+    return chain.turn == TurnLaw::near_field && chain.law == LineLaw::constant && chain.first_side < 0 &&
+           term.matrix < 0 && can_fuse(chain.law, term.end_stride[0]);
+  }
+
   /// All of a row in one loop, where its arrays are plain ones of doubles; otherwise nothing is done.
   KOKKOS_INLINE_FUNCTION bool write_at_once(VolumeBox const& box, int n_terms, int f, int i, int j, int k, int n,
                                             Index node) const {
     FusedRow row;
     if (!arrays_of_row(node, out[f], row)) return false;
+    if (chains(terms(box.first_term).chain).turn != TurnLaw::none)
+      return write_turned(row, node, terms(box.first_term), f, ends_of_row(box, terms(box.first_term), f, i, j, k, n));
     VolumeTerm const &a = terms(box.first_term), &b = terms(box.first_term + n_terms - 1);
     LineLaw const law = chains(a.chain).law;
     if (n_terms == 1)
@@ -187,6 +198,23 @@ struct VolumePass {
     else
       write_fused(row, moves, law, ends_of_row(box, a, f, i, j, k, n), chains(b.chain).law,
                   ends_of_row(box, b, f, i, j, k, n));
+    return true;
+  }
+
+  /// The same of a row near a wall that turns.
+  KOKKOS_INLINE_FUNCTION bool write_turned(FusedRow& row, Index node, VolumeTerm const& term, int f,
+                                           RowEnds const& ends) const {
+    if (turned[f].has_rates() || !baseline.plain_row(node, row.from_x, row.from_y, row.from_z)) return false;
+    Chain const& chain = chains(term.chain);
+    auto const write = [&](auto step) {
+      LineTerm const line(ends, LawWeight<LineLaw::constant>(), step);
+      with_turn_near_wall(turned[f].values, chain, ends, step, [&](auto const& turn) {
+        double const *const x = row.from_x, *const y = row.from_y, *const z = row.from_z;
+        Vec3 const offset = term.offset;
+        write_row(row, moves, ends.n, [=](int w) { return line.at(w) + turn.at(w, Vec3{x[w], y[w], z[w]} + offset); });
+      });
+    };
+    ends.step == 0 ? write(Constant<0>()) : write(Constant<1>());
     return true;
   }
 
@@ -238,9 +266,17 @@ struct VolumePass {
     read_baseline(node, row.n, x);
     if (term.matrix >= 0) turn(transpose(matrices(term.matrix)), row.n, x);
     add_vector(term.offset, row.n, x);
-    TurnedEndsWithRates const turned_ends = turned[f];
-    TurnedRow<width> const turned_row{turned_ends, chain, row.lower, row.t, row.n};
-    with_step(row.step, [&](auto step) { turned_row.add_to(step, x, v); });
+    with_step(row.step, [&](auto step) {
+      with_turns(turned[f], chain, row, step, [&](auto const& turn) {
+        GRIDMORPH_INDEPENDENT_LOOP
+        for (int w = 0; w < row.n; ++w) {
+          Vec3 const c = turn.at(w, {x.x[w], x.y[w], x.z[w]});
+          v.x[w] += c.x;
+          v.y[w] += c.y;
+          v.z[w] += c.z;
+        }
+      });
+    });
   }
   KOKKOS_INLINE_FUNCTION void add_common(VolumeBox const& box, int f, Index node, int n, Row& u) const {
     Row x;

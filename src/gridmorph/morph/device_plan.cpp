@@ -119,16 +119,14 @@ std::vector<kernels::SideLine> add_copies_across(std::vector<std::int32_t> const
 std::vector<double> inverse_steps(JoinedTables const& joined) {
   std::vector<double> const& t = joined.sides.t;
   std::vector<double> out(t.size(), 0);
-  auto const fill = [&](Index first, int n, Index step) {
-    for (Index at = first; at < first + (n - 1) * step; at += step)
-      if (double const rise = t[at + step] - t[at]; rise > 0) out[at] = 1 / rise;
-  };
   for (kernels::Side const& side : joined.sides.sides) {
     int const n_s = joined.lines.chains[side.chain].n_s;
-    for (int w = 0; w < side.n_w; ++w) {
-      fill(side.first + Index(n_s) * w, n_s, 1);
-      if (side.across >= 0) fill(side.across + w, n_s, side.n_w);
-    }
+    for (int w = 0; w < side.n_w; ++w)
+      for (int p = 0; p + 1 < n_s; ++p) {
+        Index const at = side.first + Index(n_s) * w + p;
+        if (double const rise = t[at + 1] - t[at]; rise > 0) out[at] = 1 / rise;
+        if (side.across >= 0) out[side.across + Index(side.n_w) * p + w] = out[at];
+      }
   }
   return out;
 }
