@@ -39,6 +39,7 @@ BoundarySurface surface_of(Mesh const& mesh, Patch const& patch) {
     for (int axis = 0, d = 0; axis < 3 && d < 2; ++axis)
       if (patch.range.extent(axis) > 1) (*out.grid)[d++] = patch.range.extent(axis);
   }
+  out.nodes.reserve(std::size_t(patch.range.size()));
   for_each_node(mesh.zones[patch.zone], patch.range, [&](Index n) { out.nodes.push_back(n); });
   return out;
 }
@@ -133,6 +134,7 @@ Boundary::Boundary(Mesh const& mesh, UnstructuredTopology const& topology, Bound
 }
 
 std::vector<Vec3> Boundary::points(std::span<int const> patches) const {
+  if (patches.size() == 1) return points_of(surface(patches.front()).nodes);
   std::vector<Vec3> out;
   for (int const p : patches) {
     auto const own = points_of(surface(p).nodes);
@@ -143,6 +145,7 @@ std::vector<Vec3> Boundary::points(std::span<int const> patches) const {
 
 std::vector<Vec3> Boundary::points_of(std::vector<Index> const& nodes) const {
   std::vector<Vec3> out;
+  out.reserve(plane_ ? 2 * nodes.size() : nodes.size());
   for (Index const n : nodes) out.push_back(mesh_.coordinates[n]);
   if (plane_)
     for (Index const n : nodes) out.push_back(mesh_.coordinates[n] + across_);

@@ -2,6 +2,7 @@
 #include <gridmorph/boundary/links.hpp>
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/mesh/coordinate_resolution.hpp>
 #include <gridmorph/mesh/extent.hpp>
@@ -178,21 +179,27 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
 
   auto const precision = coordinate_precisions(mesh);
   PeriodicFits const fits(mesh, links.mesh_size);
+  std::vector<std::string> said(mesh.interfaces.size());  // of each, so that they come in order
+  struct Made {
+    std::size_t interface;
+    int forward;  ///< link, the way back follows it
+  };
+  std::vector<Made> made;
   for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) {
     Interface1to1 const& face = mesh.interfaces[f];
     auto const name = [&] { return describe_interface(mesh, face); };
     if (face.donor_zone < 0 || face.donor_zone >= int(mesh.zones.size())) {
-      problems.add(name() + ": its donor zone does not exist; correct the connection");
+      said[f] = name() + ": its donor zone does not exist; correct the connection";
       continue;
     }
     if (!within(mesh.zones[face.zone], face.range) || !on_one_face(mesh.zones[face.zone], face.range)) {
-      problems.add(name() + ": the range is not on a face of its zone; correct the connection");
+      said[f] = name() + ": the range is not on a face of its zone; correct the connection";
       continue;
     }
     IndexRange const image = face.to_donor(face.range);
     if (!within(mesh.zones[face.donor_zone], image) || !on_one_face(mesh.zones[face.donor_zone], image)) {
-      problems.add(name() + ": the donor range " + to_string(image) + " is not on a face of zone '" +
-                   mesh.zones[face.donor_zone].name + "'; correct the connection");
+      said[f] = name() + ": the donor range " + to_string(image) + " is not on a face of zone '" +
+                mesh.zones[face.donor_zone].name + "'; correct the connection";
       continue;
     }
     // The other side of a connection that is stored twice gets exactly the inverse of the transform fitted first, and
@@ -207,21 +214,9 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
       links.all[*stored].interface = int(f);
       continue;
     }
-    Link link{int(f), face.zone, face.donor_zone, face.range, face.to_donor, face.periodic.has_value(), {}, 0};
-    if (link.periodic) link.transform = fits.of(f);
-    WorstPair const worst = worst_pair(mesh, face, link.transform, link.periodic);
-    link.mismatch = worst.distance;
-    double const tolerance =
-        options.matching_tolerance > 0
-            ? options.matching_tolerance
-            : coincidence_tolerance(links.mesh_size, std::max(precision[face.zone].resolution(),
-                                                              precision[face.donor_zone].resolution()));
-    if (!(worst.distance <= tolerance))
-      problems.add(name() + ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) +
-                   " and " + describe_node(mesh, worst.donor) + " are " + to_text(worst.distance, 3) +
-                   " apart (tolerance " + to_text(tolerance, 3) +
-                   "); raise matching_tolerance if that is how the mesh was made");
+    Link const link{int(f), face.zone, face.donor_zone, face.range, face.to_donor, face.periodic.has_value(), {}, 0};
     int const forward = int(links.all.size());
+    made.push_back({f, forward});
     links.all.push_back(link);
     links.of_zone[link.zone].push_back(forward);
     Link back = link;
@@ -229,10 +224,32 @@ Links connect(HostInstance const& host, Mesh const& mesh, TopologyOptions const&
     back.donor_zone = link.zone;
     back.range = image;
     back.to_donor = link.to_donor.inverse();
-    back.transform = link.transform.inverse();
     links.of_zone[back.zone].push_back(forward + 1);
     links.all.push_back(back);
   }
+  // Their points are looked at side by side.
+  detail::for_all_parts(host, "gridmorph::connect", Index(made.size()), [&](Index n) {
+    auto const [f, forward] = made[n];
+    Interface1to1 const& face = mesh.interfaces[f];
+    Link& link = links.all[forward];
+    Link& back = links.all[forward + 1];
+    if (link.periodic) link.transform = fits.of(f);
+    back.transform = link.transform.inverse();
+    WorstPair const worst = worst_pair(mesh, face, link.transform, link.periodic);
+    link.mismatch = back.mismatch = worst.distance;
+    double const tolerance =
+        options.matching_tolerance > 0
+            ? options.matching_tolerance
+            : coincidence_tolerance(links.mesh_size, std::max(precision[face.zone].resolution(),
+                                                              precision[face.donor_zone].resolution()));
+    if (!(worst.distance <= tolerance))
+      said[f] = describe_interface(mesh, face) +
+                ": its points do not coincide with the donor's: " + describe_node(mesh, worst.own) + " and " +
+                describe_node(mesh, worst.donor) + " are " + to_text(worst.distance, 3) + " apart (tolerance " +
+                to_text(tolerance, 3) + "); raise matching_tolerance if that is how the mesh was made";
+  });
+  for (std::string& problem : said)
+    if (!problem.empty()) problems.add(std::move(problem));
   return links;
 }
 

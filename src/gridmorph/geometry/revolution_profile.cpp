@@ -1,6 +1,7 @@
 // Profiles of revolution from scattered nodes: sort, merge what is one point up to noise, thin, then slopes and
 // curvatures.
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/geometry/slip_surface.hpp>
 
 #include <algorithm>
@@ -57,17 +58,20 @@ double off_polynomial(Points const& p, std::size_t i, std::size_t each_side) {
 /// through six; of the medians the smallest is taken, so that neither curvature nor amplified noise passes for noise.
 double estimate_noise(Points const& p) {
   if (p.size() < least_for_statistics) return 0;
-  std::vector<double> chord, cubic, quintic;
-  for (std::size_t i = 2; i + 2 < p.size(); ++i) {
+  std::vector<double> chord(p.size() - 4), cubic(chord.size()), quintic(chord.size());
+  detail::for_many({}, "gridmorph::profile::noise", Index(chord.size()), [&](Index n) {
+    std::size_t const i = std::size_t(n) + 2;
     Point const &a = p[i - 1], &b = p[i + 1];
     double const t = b.first > a.first ? (p[i].first - a.first) / (b.first - a.first) : 0.5;
-    chord.push_back(std::abs(p[i].second - (a.second + t * (b.second - a.second))));
-    if (double const off = off_polynomial(p, i, 2); off >= 0) cubic.push_back(off);
-    if (double const off = off_polynomial(p, i, 3); off >= 0) quintic.push_back(off);
-  }
+    chord[n] = std::abs(p[i].second - (a.second + t * (b.second - a.second)));
+    cubic[n] = off_polynomial(p, i, 2);
+    quintic[n] = off_polynomial(p, i, 3);
+  });
   double noise = median(chord);
-  for (std::vector<double>* const off : {&cubic, &quintic})
+  for (std::vector<double>* const off : {&cubic, &quintic}) {
+    std::erase_if(*off, [](double v) { return !(v >= 0); });
     if (off->size() * 2 >= chord.size()) noise = std::min(noise, median(*off));
+  }
   return noise;
 }
 
@@ -165,7 +169,8 @@ class Slopes {
 
   std::vector<double> all() {
     std::vector<double> s(p_.size());
-    for (int i = 0; i < n_; ++i) {
+    detail::for_many({}, "gridmorph::profile::slopes", Index(n_), [&](Index n) {
+      int const i = int(n);
       if (kink_[i]) {
         s[i] = at_kink(i);
       } else {
@@ -173,7 +178,7 @@ class Slopes {
         s[i] = d.first;
         bend_[i] = d.second;
       }
-    }
+    });
     // A short table does not tell bends from kinks: it is drawn without overshoot everywhere.
     if (is_table())
       for (int i = 0; i < n_; ++i) s[i] = limited(i, s[i]);
@@ -195,8 +200,27 @@ class Slopes {
   }
 
  private:
-  /// Numbers of the points beside one, without it, that a polynomial through it also passes through.
-  using Stencil = std::vector<int>;
+  /// Numbers of the points beside one, without it, that a polynomial through it also passes through: a few, kept
+  /// without an allocation.
+  class Stencil {
+   public:
+    Stencil() = default;
+    Stencil(int const* first, int const* last) {
+      for (; first != last; ++first) push_back(*first);
+    }
+    void push_back(int point) { points_[std::size_t(n_++)] = point; }
+    [[nodiscard]] std::size_t size() const { return std::size_t(n_); }
+    [[nodiscard]] int operator[](int n) const { return points_[std::size_t(n)]; }
+    [[nodiscard]] int back() const { return points_[std::size_t(n_) - 1]; }
+    [[nodiscard]] int* begin() { return points_.data(); }
+    [[nodiscard]] int* end() { return points_.data() + n_; }
+    [[nodiscard]] int const* begin() const { return points_.data(); }
+    [[nodiscard]] int const* end() const { return points_.data() + n_; }
+
+   private:
+    std::array<int, 32> points_{};  ///< six that a polynomial passes through, and what with_skipped() adds to them
+    int n_ = 0;
+  };
 
   [[nodiscard]] bool is_table() const { return p_.size() < least_for_statistics; }
 
@@ -384,7 +408,7 @@ class Slopes {
     };
     int n_left = n(left, right), n_right = n(right, left);
     Stencil out(left.begin(), left.begin() + n_left);
-    out.insert(out.end(), right.begin(), right.begin() + n_right);
+    for (int k = 0; k < n_right; ++k) out.push_back(right[k]);
     bool const one_sided = n_left < each_side || n_right < each_side;
     for (bool more = one_sided && !is_table(); more && int(out.size()) < 2 * each_side;) {
       Stencil const& longer = n_left < n_right ? right : left;
@@ -444,7 +468,6 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
                         "), is not finite");
   if (points.size() < 2) throw MotionError("a profile needs at least two points at different axial positions");
 
-  Points const original = points;
   std::sort(points.begin(), points.end());
   double const length = points.back().first - points.front().first;
   double r_lo = std::numeric_limits<double>::infinity(), r_hi = -r_lo;
@@ -465,7 +488,8 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
                       " about any curve: not one surface of revolution");
 
   double const width = std::min(std::max(1e-9 * length, 16 * noise), 1e-4 * length);
-  points = thin(merge(points, width, 1e-3 * size), std::max(1e-7 * length, std::min(300 * noise, 1e-3 * length)));
+  Points const given = std::move(points);
+  points = thin(merge(given, width, 1e-3 * size), std::max(1e-7 * length, std::min(300 * noise, 1e-3 * length)));
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     double const rise = std::abs(points[i + 1].second - points[i].second);
     if (rise > 1e-3 * size && rise > 100 * (points[i + 1].first - points[i].first))
@@ -486,7 +510,10 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
     profile.knots.push_back(knot);
   }
   profile.bucket_piece = bucket_pieces(profile.knots);
-  for (auto const& [a, r] : original) profile.deviation = std::max(profile.deviation, std::abs(r - profile(a)));
+  std::vector<double> off(given.size());
+  detail::for_many({}, "gridmorph::profile::deviation", Index(given.size()),
+                   [&](Index n) { off[n] = std::abs(given[n].second - profile(given[n].first)); });
+  for (double const d : off) profile.deviation = std::max(profile.deviation, d);
   return profile;
 }
 

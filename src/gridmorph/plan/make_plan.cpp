@@ -547,7 +547,8 @@ PlannedMorph build_plan(PlanBasis const& basis, Priority& priority, PlanLines co
   plan.n_slots = skeleton.size();
   RotationTable rotations(plan.rotations);
   std::vector<int> const box_of_piece = inner_boxes(mesh, topology, plan.boxes);
-  PlanContext context{mesh, topology, skeleton, rotations, box_of_piece, basis.kinds, basis.ends, lines.lengths};
+  PlanContext context{priority.host(), mesh,        topology,   skeleton,     rotations,
+                      box_of_piece,    basis.kinds, basis.ends, lines.lengths};
   WallRoots roots(context);
   context.roots = &roots;
   Known known(topology.lattice.n_classes());

@@ -399,6 +399,7 @@ class Finder {
   void revolution(Patches const& members, Fit const& fit) {
     auto const points = boundary_.points(members);
     MeridionalPoints meridional;
+    meridional.reserve(points.size());
     double size = 0;
     for (Vec3 const& p : points) {
       auto const [a, r] = frame_.meridional(p);

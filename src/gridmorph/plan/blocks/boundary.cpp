@@ -82,6 +82,16 @@ BoundaryRequests collect_boundary(PlanContext const& context, BoundaryMotion con
 
   BoundaryRequests boundary;
   boundary.name(NamedBoundary(mesh));
+  // Long lists that grow are copied again and again.
+  Index n_known = 0, n_requests = 0;
+  for (int c = 0; c < lattice.n_classes(); ++c)
+    if (known(c)) n_known += lattice.nodes(lattice.copies(c).front().entity).size();
+  for (ExplicitEntity const& asks : given)
+    for_closure(lattice, lattice.copies(asks.entity_class).front().entity,
+                [&](int part) { n_requests += lattice.nodes(part).size(); });
+  plan.boundary_nodes.reserve(n_known);
+  plan.boundary_slots.reserve(n_known);
+  boundary.requests.reserve(n_requests);
   std::vector<Index> first_node(lattice.n_classes(), -1);
   for (int c = 0; c < lattice.n_classes(); ++c) {
     if (!known(c)) continue;

@@ -7,6 +7,7 @@
 // The pieces of a chain are compiled into the flat tables that kernels walk and sweep.
 #pragma once
 
+#include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/plan/blocks/chain.hpp>
 #include <gridmorph/plan/blocks/grid_lengths.hpp>
@@ -77,6 +78,7 @@ class WallRoots;
 
 /// What every part of a plan refers to.
 struct PlanContext {
+  HostInstance host;  ///< that loops over nodes and lines run on
   Mesh const& mesh;
   Topology const& topology;
   Skeleton const& skeleton;
@@ -130,10 +132,20 @@ void add_writer(PlanContext const& context, LineTables& lines, std::vector<kerne
                 std::vector<VolumePart>& volume, int number, PlacedBox const& box, int piece, int entity, int category,
                 kernels::Segment& segment);
 
+/// A line of a side whose parameters are still to be found.
+struct SideWalk {
+  std::size_t tube = 0;
+  int a = 0, b = 0;
+  Index at = 0;  ///< of its first one in SideTables::t
+};
+
 /// Appends the side tables of chain number `number` (the last in stage.lines) when any of its sides, or an edge or
-/// corner on them, is known; leaves the chain a plain sweep otherwise. Cost: O(nodes on the chain's surface).
+/// corner on them, is known; leaves the chain a plain sweep otherwise. `walks`: gets the lines of its sides. Cost:
+/// O(nodes on the chain's surface).
 void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
-                     int number, Stage& stage);
+                     int number, Stage& stage, std::vector<SideWalk>& walks);
+/// Finds the line parameters of sides once the lines of all chains are there.
+void find_side_parameters(PlanContext const& context, std::vector<SideWalk> const& walks, Stage& stage);
 
 // --- implementation of the template ---
 

@@ -4,7 +4,6 @@
 #include <gridmorph/plan/blocks/boundary_facts.hpp>
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -13,25 +12,29 @@
 namespace gridmorph {
 namespace {
 
-std::vector<Index> patch_nodes(Mesh const& mesh, bool sliding) {
+/// Nodes of patches, each once, those on planes that slide left out.
+std::vector<Index> nodes_of_patches(Mesh const& mesh) {
+  std::vector<bool> wanted(std::size_t(mesh.n_nodes()), true);
+  auto const for_patches = [&](bool sliding, auto const& visit) {
+    for (Patch const& patch : mesh.patches)
+      if ((patch.kind == PatchKind::connection) == sliding) for_each_node(mesh.zones[patch.zone], patch.range, visit);
+  };
+  for_patches(true, [&](Index n) { wanted[n] = false; });
   std::vector<Index> out;
-  for (Patch const& patch : mesh.patches)
-    if ((patch.kind == PatchKind::connection) == sliding)
-      for_each_node(mesh.zones[patch.zone], patch.range, [&](Index n) { out.push_back(n); });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  for_patches(false, [&](Index n) {
+    if (!wanted[n]) return;
+    out.push_back(n);
+    wanted[n] = false;
+  });
   return out;
 }
 
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-/// Pairs of nodes at one place, those on planes that slide left out.
+/// Pairs of nodes at one place.
 Pairs pairs_at_one_place(Mesh const& mesh, double mesh_size) {
-  std::vector<Index> const all = patch_nodes(mesh, false), sliding = patch_nodes(mesh, true);
-  std::vector<Index> nodes;
-  std::set_difference(all.begin(), all.end(), sliding.begin(), sliding.end(), std::back_inserter(nodes));
   return coincident_pairs(
-      mesh.coordinates, nodes, [&](Index n) { return mesh.zone_of(n); },
+      mesh.coordinates, nodes_of_patches(mesh), [&](Index n) { return mesh.zone_of(n); },
       coincidence_tolerance(mesh_size, coordinate_resolution(mesh)));
 }
 

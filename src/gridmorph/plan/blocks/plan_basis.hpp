@@ -101,6 +101,7 @@ class Priority {
   [[nodiscard]] bool quality_leads() const;
   [[nodiscard]] std::string reason(RankedChain const& chain) const;
   [[nodiscard]] std::vector<std::string> const& kind_order() const { return kind_order_; }
+  [[nodiscard]] HostInstance const& host() const { return host_; }
 
  private:
   void measure_angles(std::set<int> const& blocks);

@@ -1,3 +1,4 @@
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/plan/blocks/chain_tables.hpp>
 #include <gridmorph/plan/blocks/host_lines.hpp>
 
@@ -125,7 +126,7 @@ void add_side_gathers(PlanContext const& context, Chain const& chain, ChainLayou
 }  // namespace
 
 void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout const& layout, Known const& known,
-                     int number, Stage& stage) {
+                     int number, Stage& stage, std::vector<SideWalk>& walks) {
   Topology const& topology = context.topology;
   std::vector<kernels::Junction> const junctions = known_around(topology, layout, known);
   kernels::Chain& device = stage.lines.chains[number];
@@ -160,9 +161,8 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
     tables.sides.push_back({number, n_w, Index(tables.t.size())});
     tables.t.resize(tables.t.size() + std::size_t(n_w) * device.n_s);
   }
-  // The same walk as the kernels', on borrowed host tables, so that t is the same number.
-  kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
-  for (kernels::Tube const& tube : stage.lines.tubes) {
+  for (std::size_t n = 0; n < stage.lines.tubes.size(); ++n) {
+    kernels::Tube const& tube = stage.lines.tubes[n];
     if (tube.chain != number) continue;
     auto add_line = [&](int q, int a, int b) {
       int const w = q < 2 ? tube.b_begin + b : tube.a_begin + a;
@@ -171,9 +171,7 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
       bool const repeated = q < 2 ? (b == 0 && tube.b_begin > 0) : (a == 0 && tube.a_begin > 0);
       if (repeated) return;
       tables.lines.push_back({side, w});
-      Index const at = tables.sides[side].first + Index(device.n_s) * w;
-      kernels::walk_line(table, tube, a, b, context.lengths,
-                         [t = tables.t.data() + at](int position, double fraction) { t[position] = fraction; });
+      walks.push_back({n, a, b, tables.sides[side].first + Index(device.n_s) * w});
     };
     for (int b = 0; b < tube.n_b; ++b) {
       if (tube.a_begin == 0) add_line(0, 0, b);
@@ -185,6 +183,16 @@ void add_side_tables(PlanContext const& context, Chain const& chain, ChainLayout
     }
   }
   add_side_gathers(context, chain, layout, known, device, tables);
+}
+
+void find_side_parameters(PlanContext const& context, std::vector<SideWalk> const& walks, Stage& stage) {
+  // The same walk as the kernels', on borrowed host tables, so that t is the same number.
+  kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
+  detail::for_many(context.host, "gridmorph::side_parameters", Index(walks.size()), [&](Index n) {
+    SideWalk const& walk = walks[n];
+    kernels::walk_line(table, stage.lines.tubes[walk.tube], walk.a, walk.b, context.lengths,
+                       [t = stage.sides.t.data() + walk.at](int position, double fraction) { t[position] = fraction; });
+  });
 }
 
 }  // namespace gridmorph

@@ -189,6 +189,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
   std::map<int, int> writer;      // entity class -> entity that is written
   std::map<int, Origin> becomes;  // entity class -> what it counts as
   std::map<int, int> turning;     // entity class that gets a rotation -> whose it is
+  std::vector<SideWalk> walks;
   for (StageChain const& entry : chains) {
     Chain const chain = with_contiguous_a(context, entry.chain);
     ChainLayout const layout = lay_out(context.topology, chain);
@@ -208,7 +209,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
             [&](Index3 const& at) { return at[1] + Index(device.n_a) * at[2]; }, stage.ends);
       });
     append_lines(context, chain, layout, number, stage.lines);
-    add_side_tables(context, chain, layout, known, number, stage);
+    add_side_tables(context, chain, layout, known, number, stage, walks);
     if (device.turn != kernels::TurnLaw::none) add_turn_positions(context, chain, layout, number, stage);
     if (entry.turn == kernels::TurnLaw::far && device.turned_ends != 0)
       set_pivots(context, chain, layout, known, device, stage.lines);
@@ -234,6 +235,7 @@ Stage build_stage(PlanContext const& context, std::vector<StageChain> const& cha
     for (ChainStep const& step : chain.steps) path.blocks.push_back(step.block);
     stage.paths.push_back(std::move(path));
   }
+  find_side_parameters(context, walks, stage);
   for (auto const& [c, entity] : writer) {
     known.known[c] = 1;
     known.kind[c] = becomes.at(c).kind;

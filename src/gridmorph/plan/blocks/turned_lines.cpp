@@ -1,3 +1,4 @@
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/kernels/turned_line.hpp>
 #include <gridmorph/plan/blocks/host_lines.hpp>
 #include <gridmorph/plan/blocks/turned_lines.hpp>
@@ -104,32 +105,52 @@ void add_near_field_lines(PlanContext const& context, Chain const& chain, ChainL
   kernels::Field<double const> const x{context.mesh.coordinates.x.data(), context.mesh.coordinates.y.data(),
                                        context.mesh.coordinates.z.data()};
   kernels::LineTable<Kokkos::HostSpace> const table = host_lines(stage.lines);
+  struct Line {
+    kernels::Tube const* tube;
+    int a, b;
+  };
+  std::vector<Line> lines;
   for (kernels::Tube const& tube : stage.lines.tubes) {
     if (tube.chain != number) continue;
-    kernels::Segment const& segment = stage.lines.segments[tube.first_segment];
     for (int b = 0; b < tube.n_b; ++b)
-      for (int a = 0; a < tube.n_a; ++a) {
-        Index const at = tube.a_begin + a + Index(device.n_a) * (tube.b_begin + b);
-        auto const [root, matrix] = roots[at];
-        Index const node = segment.first + a * segment.stride_a + b * segment.stride_b;
-        int const steps = steps_to_resolved(segment, node, x, context.roots->resolved_arm());
-        Vec3 const edge = x[node + steps * segment.stride_s] - x[node];
-        double t = 0;
-        kernels::walk_line(table, tube, a, b, x, [&](int position, double fraction) {
-          if (position == steps) t = fraction;
-        });
-        Vec3 normal = fan_normal(context.roots->nodes()[root].around);
-        if (matrix >= 0) normal = context.rotations[matrix] * normal;
-        double const size = norm(normal);
-        stage.near_field.push_back({device.first_end_value + at, device.first_end_value + device.section_size() + at,
-                                    root, matrix, size > 0 ? (1 / size) * normal : Vec3{}, edge,
-                                    kernels::near_field_weight(t)});
-        double const length = norm(edge);
-        if (t > 0) context.roots->set_thickness(root, length / t);
-        if (length > 0)
-          context.roots->add_line(root,
-                                  (1 / length) * (matrix >= 0 ? transpose(context.rotations[matrix]) * edge : edge));
-      }
+      for (int a = 0; a < tube.n_a; ++a) lines.push_back({&tube, a, b});
+  }
+  auto const first = Index(stage.near_field.size());
+  stage.near_field.resize(first + lines.size());
+  std::vector<double> resolved_at(lines.size());
+  detail::for_many(context.host, "gridmorph::near_field_lines", Index(lines.size()), [&](Index n) {
+    auto const [tube, a, b] = lines[n];
+    kernels::Segment const& segment = stage.lines.segments[tube->first_segment];
+    Index const at = tube->a_begin + a + Index(device.n_a) * (tube->b_begin + b);
+    auto const [root, matrix] = roots[at];
+    Index const node = segment.first + a * segment.stride_a + b * segment.stride_b;
+    int const steps = steps_to_resolved(segment, node, x, context.roots->resolved_arm());
+    Vec3 const edge = x[node + steps * segment.stride_s] - x[node];
+    double t = 0;
+    kernels::walk_line(table, *tube, a, b, x, [&t, steps](int position, double fraction) {
+      if (position == steps) t = fraction;
+    });
+    resolved_at[n] = t;
+    Vec3 normal = fan_normal(context.roots->nodes()[root].around);
+    if (matrix >= 0) normal = context.rotations[matrix] * normal;
+    double const size = norm(normal);
+    stage.near_field[first + n] = {device.first_end_value + at,
+                                   device.first_end_value + device.section_size() + at,
+                                   root,
+                                   matrix,
+                                   size > 0 ? (1 / size) * normal : Vec3{},
+                                   edge,
+                                   kernels::near_field_weight(t)};
+  });
+  // Several lines stand on the roots of edges: what they say of them is taken in their order.
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    kernels::NearFieldLine const& line = stage.near_field[std::size_t(first) + n];
+    double const length = norm(line.edge);
+    if (resolved_at[n] > 0) context.roots->set_thickness(line.root, length / resolved_at[n]);
+    if (length > 0)
+      context.roots->add_line(
+          line.root,
+          (1 / length) * (line.matrix >= 0 ? transpose(context.rotations[line.matrix]) * line.edge : line.edge));
   }
 }
 

@@ -10,7 +10,6 @@
 #include <utility>
 
 namespace gridmorph {
-namespace {}  // namespace
 
 RootFace::RootFace(PlanContext const& context, FaceSide const& face)
     : piece(face.piece), axis(face.axis), side(face.side) {
@@ -69,11 +68,6 @@ Vec3 fan_normal(std::vector<kernels::RootNeighbour> const& around) {
   return sum;
 }
 
-std::int32_t WallRoots::of_slot(Index slot) const {
-  auto const found = of_slot_.find(slot);
-  return found == of_slot_.end() ? -1 : found->second;
-}
-
 WallRoots::Place WallRoots::at(Index node) const {
   auto const found = place_.find(node);
   return found == place_.end() ? Place{} : found->second;
@@ -83,6 +77,7 @@ void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
   Lattice const& lattice = context_.topology.lattice;
   std::vector<char> wanted(is_wall_.size(), 0);
   for (int const p : patches) is_wall_[p] = wanted[p] = 1;
+  of_slot_.resize(context_.skeleton.size(), -1);
   for (int c = 0; c < lattice.n_classes(); ++c) {
     int const patch = context_.topology.blocks.patch_of_face()[c];
     if (patch < 0 || wanted[patch] == 0) continue;
@@ -92,9 +87,12 @@ void WallRoots::add_walls(std::vector<int> const& patches, double turn) {
     for (int q = 0; q < face.nodes.extent(face.along[1]); ++q)
       for (int p = 0; p < face.nodes.extent(face.along[0]); ++p) {
         RootFace::Node const& node = face(p, q);
-        auto const [found, fresh] = of_slot_.try_emplace(node.slot, std::int32_t(nodes_.size()));
-        if (fresh) nodes_.push_back({.slot = node.slot, .centre = node.slot, .turn = turn});
-        place_[zone.node(face.at(p, q))] = {found->second, node.copy};
+        std::int32_t& root = of_slot_[node.slot];
+        if (root < 0) {
+          root = std::int32_t(nodes_.size());
+          nodes_.push_back({.slot = node.slot, .centre = node.slot, .turn = turn});
+        }
+        place_[zone.node(face.at(p, q))] = {root, node.copy};
       }
     add_neighbours(
         context_, face, [&](Index slot) { return of_slot(slot); }, nodes_);
@@ -120,7 +118,7 @@ void WallRoots::mark(Known& known) const {
 void WallRoots::find_bodies() {
   DisjointSets<std::int32_t> sets(nodes_.size());
   for (std::size_t r = 0; r < nodes_.size(); ++r)
-    for (kernels::RootNeighbour const& k : nodes_[r].around) sets.join(std::int32_t(r), of_slot_.at(k.slot));
+    for (kernels::RootNeighbour const& k : nodes_[r].around) sets.join(std::int32_t(r), of_slot(k.slot));
   std::vector<std::int32_t> const number = sets.set_numbers();
   body_.assign(number.begin(), number.end());
   for (int const body : body_) n_bodies_ = std::max(n_bodies_, body + 1);
@@ -207,7 +205,7 @@ void WallRoots::join_coincident() {
   for (std::size_t r = 0; r < nodes_.size(); ++r)
     for (kernels::RootNeighbour const& k : nodes_[r].around) {
       if (norm(k.arm) > 0 || k.matrix >= 0) continue;
-      sets.join(std::int32_t(r), of_slot_.at(k.slot));
+      sets.join(std::int32_t(r), of_slot(k.slot));
       any = true;
     }
   if (!any) return;
@@ -246,7 +244,7 @@ void WallRoots::turn_as_resolved(CoordinatePrecision const& precision, double ro
   // Turns are vectors in the frame of a slot, so that ways end where that changes.
   auto const for_neighbours = [&](std::int32_t r, auto const& visit) {
     for (kernels::RootNeighbour const& k : nodes_[r].around)
-      if (k.matrix < 0) visit(of_slot_.at(k.slot), norm(k.arm));
+      if (k.matrix < 0) visit(of_slot(k.slot), norm(k.arm));
   };
   for (std::int32_t r = 0; r < std::int32_t(nodes_.size()); ++r)
     if (!resolved[r])

@@ -102,7 +102,7 @@ class WallRoots {
   [[nodiscard]] std::vector<RootFace> const& faces() const { return faces_; }
   [[nodiscard]] bool is_wall(int patch) const { return is_wall_[patch] != 0; }
   /// The root of a slot; -1: none.
-  [[nodiscard]] std::int32_t of_slot(Index slot) const;
+  [[nodiscard]] std::int32_t of_slot(Index slot) const { return of_slot_.empty() ? -1 : of_slot_[slot]; }
   [[nodiscard]] Place at(Index node) const;
   void set_thickness(std::int32_t root, double thickness) { nodes_[root].thickness = thickness; }
   /// A line of the near field that stands on a root leaves it along this unit vector, in the frame of its slot.
@@ -123,7 +123,7 @@ class WallRoots {
   std::vector<char> is_wall_;  ///< per patch
   std::vector<RootFace> faces_;
   std::vector<RootNode> nodes_;
-  std::unordered_map<Index, std::int32_t> of_slot_;
+  std::vector<std::int32_t> of_slot_;       ///< of the skeleton; empty before there are walls
   std::unordered_map<Index, Place> place_;  ///< per node of the mesh
   std::vector<int> body_;                   ///< per root, empty before they are found
   int n_bodies_ = 0;
