@@ -1,4 +1,5 @@
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
 #include <gridmorph/mapping/detail/point_clouds.hpp>
@@ -65,6 +66,8 @@ struct PointField::Impl {
   [[nodiscard]] std::vector<Vec3> rotations(std::vector<Vec3> const& field) const;
   void evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> points, std::span<Vec3> displacement,
                 bool iterates) const;
+  /// The kept stencils of positions, made where there is none yet; `turn` is taken.
+  [[nodiscard]] std::vector<Stencil const*> kept_stencils(std::span<Vec3 const> at) const;
 };
 
 void PointField::Impl::scale() {
@@ -216,31 +219,54 @@ std::vector<Vec3> PointField::Impl::sum_of(std::span<double const> factors) cons
   return sum;
 }
 
+std::vector<Stencil const*> PointField::Impl::kept_stencils(std::span<Vec3 const> at) const {
+  std::vector<Stencil const*> out(at.size());
+  detail::for_many({}, "gridmorph::point_field::look_up", Index(at.size()), [&](Index n) {
+    auto const known = kept.find(at[n]);
+    out[n] = known == kept.end() ? nullptr : &known->second;
+  });
+  std::vector<std::size_t> missing;
+  for (std::size_t n = 0; n < at.size(); ++n)
+    if (out[n] == nullptr) missing.push_back(n);
+  std::vector<Stencil> made(missing.size());
+  detail::for_many({}, "gridmorph::point_field::make", Index(made.size()),
+                   [&](Index k) { made[k] = make(at[missing[k]]); });
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    Vec3 const& q = at[missing[k]];
+    auto const [known, fresh] = kept.try_emplace(q, std::move(made[k]));
+    if (fresh) count(mapping, sum, q, known->second);
+    out[missing[k]] = &known->second;
+  }
+  return out;
+}
+
 void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 const> at, std::span<Vec3> displacement,
                                 bool iterates) const {
   std::vector<Vec3> const rotation = rotations(field);
+  auto const all = Index(at.size());
   if (iterates) {
-    for (std::size_t n = 0; n < at.size(); ++n) displacement[n] = apply(make(at[n]), field, rotation);
+    detail::for_many({}, "gridmorph::point_field::iterate", all,
+                     [&](Index n) { displacement[n] = apply(make(at[n]), field, rotation); });
     return;
   }
   if (options.keep) {
     std::lock_guard const lock(turn);
-    for (std::size_t n = 0; n < at.size(); ++n) {
-      auto known = kept.find(at[n]);
-      if (known == kept.end()) {
-        known = kept.emplace(at[n], make(at[n])).first;
-        count(mapping, sum, at[n], known->second);
-      }
-      displacement[n] = apply(known->second, field, rotation);
-    }
+    std::vector<Stencil const*> const stencils = kept_stencils(at);
+    detail::for_many({}, "gridmorph::point_field::apply", all,
+                     [&](Index n) { displacement[n] = apply(*stencils[n], field, rotation); });
     return;
   }
   MappingDistance here;
   double here_sum = 0;
-  for (std::size_t n = 0; n < at.size(); ++n) {
-    Stencil const stencil = make(at[n]);
-    count(here, here_sum, at[n], stencil);
-    displacement[n] = apply(stencil, field, rotation);
+  constexpr Index at_once = 65536;  // some ten megabytes of stencils
+  std::vector<Stencil> stencils(std::size_t(std::min(all, at_once)));
+  for (Index begin = 0; begin < all; begin += at_once) {
+    Index const count_of = std::min(all - begin, at_once);
+    detail::for_many({}, "gridmorph::point_field::evaluate", count_of, [&](Index n) {
+      stencils[n] = make(at[begin + n]);
+      displacement[begin + n] = apply(stencils[n], field, rotation);
+    });
+    for (Index n = 0; n < count_of; ++n) count(here, here_sum, at[begin + n], stencils[n]);
   }
   std::lock_guard const lock(turn);
   if (here.max > mapping.max || mapping.evaluated == 0) {

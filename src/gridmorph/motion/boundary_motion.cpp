@@ -2,6 +2,7 @@
 
 #include <gridmorph/core/disjoint_sets.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/core/text.hpp>
 #include <gridmorph/motion/along_walls.hpp>
 #include <gridmorph/motion/carry/carried_features.hpp>
@@ -27,6 +28,13 @@ std::vector<std::string> const* blades_of(Rule const& rule) {
   if (auto const* slide = std::get_if<CircumferentialSlideRule>(&rule)) return &slide->of;
   if (auto const* follow = std::get_if<FollowRule>(&rule)) return &follow->of;
   return nullptr;
+}
+
+/// displacement(point) of every point, on all cores where they are many.
+template <class Displacement>
+void at_each(std::span<Vec3 const> points, std::span<Vec3> out, Displacement const& displacement) {
+  detail::for_many({}, "gridmorph::boundary_motion", Index(points.size()),
+                   [&](Index n) { out[n] = displacement(points[n]); });
 }
 
 }  // namespace
@@ -79,7 +87,7 @@ struct BoundaryMotion::Impl {
     each<FfdRule>([&](int r, FfdRule const& rule) { lattices.try_emplace(r, other.lattices.at(r), rule, label(r)); });
     std::vector<std::string> said;  // with the notes of the first motion
     extend(said);
-    make_blades();
+    make_blades(&other.rows);
     carry(said);
     attach(said);
   }
@@ -87,7 +95,8 @@ struct BoundaryMotion::Impl {
   Impl(Impl const&) = delete;
   Impl& operator=(Impl const&) = delete;
 
-  void make_blades() {
+  /// `known`: rows where other motions of the same blades have been made already.
+  void make_blades(std::map<std::vector<int>, RowMotion> const* known = nullptr) {
     Problems problems;
     row_of_rule.assign(rules.size(), nullptr);
     sections_of_rule.resize(rules.size());
@@ -105,7 +114,7 @@ struct BoundaryMotion::Impl {
     for (std::size_t r = 0; r < rules.size(); ++r) {
       if (blades_of(rules[r].rule) == nullptr) continue;
       try {
-        row_of_rule[r] = &row(boundary->select_patches(*blades_of(rules[r].rule)));
+        row_of_rule[r] = &row(boundary->select_patches(*blades_of(rules[r].rule)), known);
       } catch (MotionError const& e) {
         problems.add(label(int(r)) + ": " + e.what());
       }
@@ -301,12 +310,15 @@ struct BoundaryMotion::Impl {
     if (patches.empty()) throw MotionError("of: names no patch");
   }
 
-  RowMotion const& row(std::vector<int> const& blades) {
-    if (auto const known = rows.find(blades); known != rows.end()) return known->second;
+  RowMotion const& row(std::vector<int> const& blades, std::map<std::vector<int>, RowMotion> const* known) {
+    if (auto const made = rows.find(blades); made != rows.end()) return made->second;
     require_direct(blades);
     auto const displacement = [&](int p, std::span<Vec3 const> points, std::span<Vec3> out) {
       evaluate(motion.patch[p].rule, points, out);
     };
+    if (known != nullptr)
+      if (auto const same = known->find(blades); same != known->end())
+        return rows.try_emplace(blades, same->second, *boundary, displacement).first->second;
     return rows.try_emplace(blades, *boundary, motion, blades, *slip, displacement, notes).first->second;
   }
 
@@ -360,8 +372,7 @@ struct BoundaryMotion::Impl {
     if (std::holds_alternative<FixedRule>(rule) || std::holds_alternative<PrescribedRule>(rule)) {
       std::fill(out.begin(), out.end(), Vec3{});
     } else if (auto const* rigid = std::get_if<RigidRule>(&rule)) {
-      std::transform(points.begin(), points.end(), out.begin(),
-                     [rigid](Vec3 const& p) { return gridmorph::displacement(*rigid, p); });
+      at_each(points, out, [rigid](Vec3 const& p) { return gridmorph::displacement(*rigid, p); });
     } else if (auto const* function = std::get_if<FunctionRule>(&rule)) {
       if (second_plane.is_there()) {
         std::vector<Vec3> in_first(points.begin(), points.end());
@@ -371,8 +382,7 @@ struct BoundaryMotion::Impl {
         function->function(points, out);
       }
     } else if (SectionMotion const* sections = sections_of_rule[r].get()) {
-      std::transform(points.begin(), points.end(), out.begin(),
-                     [sections](Vec3 const& p) { return sections->displacement(p); });
+      at_each(points, out, [sections](Vec3 const& p) { return sections->displacement(p); });
     } else if (std::holds_alternative<TargetRule>(rule)) {
       targets.at(r)->displacement(points, out);
     } else if (std::holds_alternative<InflateRule>(rule)) {
@@ -385,19 +395,17 @@ struct BoundaryMotion::Impl {
       carried.at(r).displacement(points, out);
     } else if (std::holds_alternative<AttachedRule>(rule)) {
       AttachedMotion const& motion_of_walls = attached.at(r);
-      std::transform(points.begin(), points.end(), out.begin(),
-                     [&](Vec3 const& p) { return motion_of_walls.displacement(p); });
+      at_each(points, out, [&](Vec3 const& p) { return motion_of_walls.displacement(p); });
     } else if (std::holds_alternative<WakeRule>(rule)) {
       WakeMotion const& wake = wakes.at(r);
-      std::transform(points.begin(), points.end(), out.begin(), [&](Vec3 const& p) { return wake.displacement(p); });
+      at_each(points, out, [&](Vec3 const& p) { return wake.displacement(p); });
     } else if (std::holds_alternative<ShockRule>(rule)) {
       ShockMotion const& shock = shocks.at(r);
-      std::transform(points.begin(), points.end(), out.begin(), [&](Vec3 const& p) { return shock.displacement(p); });
+      at_each(points, out, [&](Vec3 const& p) { return shock.displacement(p); });
     } else {
       RowMotion const& row = *row_of_rule[r];
       bool const slides = std::holds_alternative<CircumferentialSlideRule>(rule);
-      std::transform(points.begin(), points.end(), out.begin(),
-                     [&](Vec3 const& p) { return slides ? row.slide(p) : row.follow(p); });
+      at_each(points, out, [&](Vec3 const& p) { return slides ? row.slide(p) : row.follow(p); });
     }
     for (std::size_t n = 0; n < points.size(); ++n)
       if (!std::isfinite(out[n].x) || !std::isfinite(out[n].y) || !std::isfinite(out[n].z))

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <map>
-#include <unordered_map>
+#include <set>
 #include <unordered_set>
 #include <utility>
 
@@ -76,14 +76,13 @@ class Gathering {
   std::map<std::pair<int, int>, Found> found_;  ///< by patch and rule
 };
 
-/// The first patch that slips on each surface of a plan of blocks. Passages of wheels have more patches, which do not
-/// slip.
+/// The first patch that slips on each surface of a plan of blocks, as slip_surface_numbers() puts these in order.
+/// Passages of wheels have more patches, which do not slip.
 std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
-  std::vector<SlipSurface> surfaces;
-  std::vector<int> const number = slip_surface_numbers(motion.boundary().patches().size(), motion, surfaces);
-  std::vector<int> out(surfaces.size(), -1);
-  for (std::size_t p = number.size(); p-- > 0;)
-    if (number[p] >= 0) out[number[p]] = int(p);
+  std::vector<int> out;
+  std::set<int> known;
+  for (int p = 0; p < int(motion.boundary().patches().size()); ++p)
+    if (int const s = motion.slip_surface_of(p); s >= 0 && known.insert(s).second) out.push_back(p);
   return out;
 }
 
@@ -91,16 +90,17 @@ std::vector<int> patches_of_surfaces(BoundaryMotion const& motion) {
 
 std::vector<Trim> trims(Plan const& plan, BoundaryRequests const& requests, BoundaryMotion const& motion,
                         std::vector<Vec3> const& boundary) {
-  std::unordered_map<Index, std::size_t> slot_of;
-  for (std::size_t n = 0; n < plan.boundary_nodes.size(); ++n) slot_of.emplace(plan.boundary_nodes[n], n);
+  std::vector<Index> number(plan.n_slots, -1);  // of the boundary node in each slot of the skeleton
+  for (std::size_t n = 0; n < plan.boundary_slots.size(); ++n) number[plan.boundary_slots[n]] = Index(n);
   std::vector<int> const patch_of = patches_of_surfaces(motion);
   Gathering gathering(requests, motion, boundary);
   for (SpreadPass const& pass : plan.spreads)
     for (kernels::SlipEnd const& end : pass.ends) {
-      auto const slot = slot_of.find(end.node);
-      if (end.tolerance == 0 || slot == slot_of.end()) continue;
+      if (end.tolerance == 0) continue;
+      Index const n = number[end.slot];
+      if (n < 0 || plan.boundary_nodes[n] != end.node) continue;  // of a copy the owner tells
       for (int const s : end.surface)
-        if (s >= 0) gathering.look(end.node, slot->second, patch_of[s], plan.surfaces[s], end.tolerance);
+        if (s >= 0) gathering.look(end.node, std::size_t(n), patch_of[s], plan.surfaces[s], end.tolerance);
     }
   return gathering.result("they are put back, and the correction is spread along the span");
 }

@@ -119,7 +119,7 @@ std::vector<Vec3> CasePlan::displacement(Moment const* when) {
   }
   Motion const now = motion_at(case_file_, *when);
   auto out = plan_.boundary_displacement(now);
-  take_trims(plan_.trims(out, now));
+  take_trims(plan_.trims(out));  // their words are those of the rules, whatever these displace by
   return out;
 }
 

@@ -1,5 +1,6 @@
 // A sequence of meshes over time from one plan.
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/stopwatch.hpp>
 #include <gridmorph/run/ending.hpp>
 #include <gridmorph/run/run.hpp>
@@ -19,12 +20,15 @@ namespace gridmorph::cli {
 namespace {
 
 double largest_displacement(Coordinates const& before, Coordinates const& after) {
-  double squared = 0;
-  for (Index n = 0; n < before.size(); ++n) {
-    Vec3 const u = after[n] - before[n];
-    squared = std::max(squared, dot(u, u));
-  }
-  return std::sqrt(squared);
+  constexpr Index part = 16384;
+  std::vector<double> squared(std::size_t((before.size() + part - 1) / part), 0);
+  detail::for_all({}, "gridmorph::cli::largest_displacement", Index(squared.size()), [&](Index p) {
+    for (Index n = p * part; n < std::min(before.size(), (p + 1) * part); ++n) {
+      Vec3 const u = after[n] - before[n];
+      squared[p] = std::max(squared[p], dot(u, u));
+    }
+  });
+  return std::sqrt(*std::max_element(squared.begin(), squared.end()));
 }
 
 /// Throws ConfigError when an output or the report cannot be written where it should.

@@ -22,12 +22,12 @@ struct SpanLine {
   std::vector<double> span;
   Samples samples;
 
-  SpanLine(BladeSurface const& blade, std::vector<int> const& nodes) {
+  SpanLine(BladeSurface const& blade, std::vector<CylindricalMotion> const& motion, std::vector<int> const& nodes) {
     for (int n : nodes) {
       BladeNode const& b = blade.nodes[n];
       if (!span.empty() && !(b.span > span.back() + 1e-9)) continue;
       span.push_back(b.span);
-      samples.push_back({b.m, b.motion.axial, b.motion.radial, b.motion.angle_rad});
+      samples.push_back({b.m, motion[n].axial, motion[n].radial, motion[n].angle_rad});
     }
   }
   [[nodiscard]] Sample at(double h) const {
@@ -151,7 +151,7 @@ void widen(BladeSections::EdgeSpread& spread, std::vector<Side> const& sides,
 
 }  // namespace
 
-BladeSections::BladeSections(BladeSurface const& blade) {
+BladeSections::BladeSections(BladeSurface const& blade, std::vector<CylindricalMotion> const& motion) {
   std::vector<std::vector<SpanLine>> contours;
   sliced_ = blade.sliced;
   span_lo_ = -std::numeric_limits<double>::infinity();
@@ -162,7 +162,7 @@ BladeSections::BladeSections(BladeSurface const& blade) {
   for (BladeContour const& contour : blade.contours) {
     contours.emplace_back();
     for (int l : contour.lines) {
-      SpanLine const& line = contours.back().emplace_back(blade, blade.lines[l]);
+      SpanLine const& line = contours.back().emplace_back(blade, motion, blade.lines[l]);
       span_lo_ = std::max(span_lo_, line.span.front());
       span_hi_ = std::min(span_hi_, line.span.back());
       lowest_ = std::min(lowest_, line.span.front());

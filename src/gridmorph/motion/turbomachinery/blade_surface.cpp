@@ -3,6 +3,7 @@
 #include <gridmorph/boundary/face_grids.hpp>
 #include <gridmorph/boundary/patch_surface.hpp>
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/core/for_many.hpp>
 #include <gridmorph/motion/detail/spanwise_lines.hpp>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ class Stitcher {
         numbers_(1e-7 * box_diagonal(boundary.points(patches))) {}
 
   BladeSurface run() {
-    for (int const p : patches_) add_patch(p);
+    for (int const p : patches_) first_.push_back(first_.back() + int(boundary_.points(p).size()));
+    for (std::size_t p = 0; p < patches_.size(); ++p) add_patch(p);
     if (!sliced_) stitch();
     // What looks like grid lines of elements need not run from end to end of the span.
     if (!sliced_ && !of_blocks_ && !lines_reach()) sliced_ = true;
@@ -47,17 +49,13 @@ class Stitcher {
     std::vector<BladeNode> nodes;
   };
 
-  /// All nodes of a patch; of a plane mesh twice, as Boundary::points() has them.
-  Piece nodes_of(int p) {
+  /// All nodes of the patch with this place in the list; of a plane mesh twice, as Boundary::points() has them.
+  Piece nodes_of(std::size_t patch) {
     Piece all;
-    all.points = boundary_.points(p);
-    auto const n_own = boundary_.surface(p).nodes.size();
-    std::vector<Vec3> displacement(all.points.size());
-    input_.displacement(p, std::span(all.points).first(n_own), std::span(displacement).first(n_own));
-    for (std::size_t n = n_own; n < all.points.size(); ++n) displacement[n] = displacement[n - n_own];
+    all.points = boundary_.points(patches_[patch]);
     for (std::size_t n = 0; n < all.points.size(); ++n) {
       FlowPosition const at = input_.position(input_.frame.meridional(all.points[n]));
-      all.nodes.push_back({at.m, at.h, input_.motion(all.points[n], displacement[n]), all.points[n]});
+      all.nodes.push_back({at.m, at.h, first_[patch] + int(n), all.points[n]});
       all.span.push_back(at.h);
     }
     return all;
@@ -81,8 +79,9 @@ class Stitcher {
     return found;
   }
 
-  void add_patch(int p) {
-    Piece const all = nodes_of(p);
+  void add_patch(std::size_t patch) {
+    int const p = patches_[patch];
+    Piece const all = nodes_of(patch);
     FaceGrids const found = grids_of(p, all);
     if (found.left_over > 0 && !is_tip(p, all)) sliced_ = true;
     bool any = false;
@@ -177,7 +176,7 @@ class Stitcher {
     PointNumbers numbers(1e-7 * box_diagonal(boundary_.points(patches_)));
     SliceInput input;
     std::vector<BladeNode> nodes;
-    for (int const p : patches_) {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
       Piece const all = nodes_of(p);
       std::vector<int> number;
       for (std::size_t n = 0; n < all.points.size(); ++n) {
@@ -186,7 +185,7 @@ class Stitcher {
         nodes.push_back(all.nodes[n]);
         input.points.push_back(all.points[n]);
       }
-      for (auto const& f : boundary_.facets({&p, 1}).facets) add_triangles(f, number, input);
+      for (auto const& f : boundary_.facets({&patches_[p], 1}).facets) add_triangles(f, number, input);
     }
     auto const meridional = [this](Vec3 const& x) { return input_.frame.meridional(x); };
     input.span = [&](Vec3 const& x) { return input_.position(meridional(x)).h; };
@@ -198,14 +197,10 @@ class Stitcher {
         own.lines.push_back(int(blade_.lines.size()));
         auto& list = blade_.lines.emplace_back();
         for (SlicePlace const& place : line) {
-          CylindricalMotion motion;
-          for (auto const& [n, w] : place.weights) {
-            motion.axial += w * nodes[n].motion.axial;
-            motion.radial += w * nodes[n].motion.radial;
-            motion.angle_rad += w * nodes[n].motion.angle_rad;
-          }
           list.push_back(int(blade_.nodes.size()));
-          blade_.nodes.push_back({input_.position(meridional(place.point)).m, place.span, motion, place.point});
+          blade_.nodes.push_back({input_.position(meridional(place.point)).m, place.span, -1, place.point});
+          auto& mean = blade_.means.emplace_back();
+          for (auto const& [n, w] : place.weights) mean.emplace_back(nodes[n].number, w);
         }
       }
       blade_.contours.push_back(std::move(own));
@@ -286,6 +281,7 @@ class Stitcher {
   BladeInput const& input_;
   std::vector<std::string>& notes_;
   PointNumbers numbers_;
+  std::vector<int> first_{0};  ///< number of the first node of each patch, and of all at the end
   BladeSurface blade_;
   detail::SpanwiseLines lines_;
   std::vector<int> left_out_;  ///< patches without spanwise lines
@@ -300,6 +296,37 @@ BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patc
   double const size = box_diagonal(boundary.points(patches));
   if (!(size > 0) || !std::isfinite(size)) throw MotionError("the blade's nodes are one point, or not finite");
   return Stitcher(boundary, patches, input, notes).run();
+}
+
+std::vector<CylindricalMotion> motions_of(BladeSurface const& blade, Boundary const& boundary,
+                                          std::vector<int> const& patches, BladeDisplacement const& given) {
+  std::vector<Vec3> const points = boundary.points(patches);
+  std::vector<Vec3> displacement(points.size());
+  std::size_t first = 0;
+  for (int const p : patches) {
+    // Those of a plane mesh come a second time, across it.
+    std::size_t const n_own = boundary.surface(p).nodes.size(), n_all = boundary.is_plane() ? 2 * n_own : n_own;
+    auto const of_patch = std::span(displacement).subspan(first, n_all);
+    given.displacement(p, std::span(points).subspan(first, n_own), of_patch.first(n_own));
+    std::copy_n(of_patch.begin(), n_all - n_own, of_patch.begin() + std::ptrdiff_t(n_own));
+    first += n_all;
+  }
+  std::vector<CylindricalMotion> motion(points.size());
+  detail::for_many({}, "gridmorph::motions_of", Index(points.size()),
+                   [&](Index n) { motion[n] = given.motion(points[n], displacement[n]); });
+  std::vector<CylindricalMotion> out(blade.nodes.size());
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    if (!blade.sliced) {
+      out[n] = motion[blade.nodes[n].number];
+      continue;
+    }
+    for (auto const& [k, w] : blade.means[n]) {
+      out[n].axial += w * motion[k].axial;
+      out[n].radial += w * motion[k].radial;
+      out[n].angle_rad += w * motion[k].angle_rad;
+    }
+  }
+  return out;
 }
 
 int leave_out_splitters(BladeSurface& blade) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph {
@@ -36,9 +37,9 @@ struct SlicedContour {
 std::vector<SlicedContour> slice_surface(SliceInput const& input, std::vector<std::string>& notes);
 
 struct BladeNode {
-  double m = 0;              ///< position along the flow path: the axial position where that is axial
-  double span = 0;           ///< span fraction: 0 at the hub, 1 at the case
-  CylindricalMotion motion;  ///< in the components of Annulus
+  double m = 0;     ///< position along the flow path: the axial position where that is axial
+  double span = 0;  ///< span fraction: 0 at the hub, 1 at the case
+  int number = -1;  ///< among the nodes of the patches, in the order of Boundary::points(); -1 on cut facets
   Vec3 point;
 };
 
@@ -53,9 +54,11 @@ struct BladeSurface {
   std::vector<std::vector<int>> lines;  ///< nodes from hub to case
   std::vector<BladeContour> contours;
   bool sliced = false;  ///< lines were made by cutting facets (slice_surface()): they are no lines of nodes
+  /// The nodes of the patches, by their numbers, that those of cut facets are weighted means of; otherwise empty.
+  std::vector<std::vector<std::pair<int, double>>> means;
 };
 
-/// What stitch_blade needs to know about nodes.
+/// What stitch_blade needs to know about places.
 struct BladeInput {
   CylindricalFrame frame;
   std::function<FlowPosition(MeridionalPoint const&)> position;
@@ -63,6 +66,10 @@ struct BladeInput {
   std::function<double(MeridionalPoint const&)> height;
   /// A measure that increases along the flow.
   std::function<double(Vec3 const&)> along;
+};
+
+/// What the nodes of a blade do.
+struct BladeDisplacement {
   /// What the displacement of a point means for those that follow it: the components that are tabulated.
   std::function<CylindricalMotion(Vec3 const& point, Vec3 const& displacement)> motion;
   /// Displacements of the nodes of one patch, in patch_points order.
@@ -73,11 +80,15 @@ struct BladeInput {
 /// were split in span or around the section by their coincident nodes (1e-7 of the blade's size). Pieces that run
 /// nowhere spanwise (tip faces) are left out with a note. Faces of elements are put together into grids first
 /// (find_face_grids()), the lines of a plane mesh with their copies across it; where that leaves faces over, or lines
-/// that do not run along the span together, the facets are cut instead (slice_surface()), and motions are those of
-/// their corners, linear between. Throws MotionError when nothing is left or more than two surfaces meet in one line.
-/// Cost O(nodes log nodes), of cuts as slice_surface().
+/// that do not run along the span together, the facets are cut instead (slice_surface()). Throws MotionError when
+/// nothing is left or more than two surfaces meet in one line. Cost O(nodes log nodes), of cuts as slice_surface().
 BladeSurface stitch_blade(Boundary const& boundary, std::vector<int> const& patches, BladeInput const& input,
                           std::vector<std::string>& notes);
+
+/// The motions of the nodes of a stitched blade; of cut facets those of their corners, linear between. Cost O(nodes of
+/// the patches).
+std::vector<CylindricalMotion> motions_of(BladeSurface const& blade, Boundary const& boundary,
+                                          std::vector<int> const& patches, BladeDisplacement const& given);
 
 /// Leaves out the contours of splitter blades: those that begin or end elsewhere along the flow than the longest one
 /// does, by more than 15 % of its chord. What is left are the sides of one blade, or copies of it. Returns how many

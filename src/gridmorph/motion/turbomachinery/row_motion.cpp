@@ -54,24 +54,10 @@ std::vector<int> end_walls_of_row(Boundary const& boundary, SlipSurfaces const& 
   return {found.begin(), found.end()};
 }
 
-BladeSections make_sections(Boundary const& boundary, std::vector<int> const& blades, CylindricalFrame const& frame,
-                            Annulus const& annulus, RowMotion::PatchDisplacement const& displacement,
-                            std::vector<std::string>& notes) {
-  // Across the flow, what counts is how far the blade departs from keeping its span fraction.
-  auto const motion = [&](Vec3 const& point, Vec3 const& u) {
-    return annulus.components(frame.meridional(point), frame.motion(point, u));
-  };
-  BladeInput const input{frame,
-                         [&annulus](MeridionalPoint const& p) { return annulus.position(p); },
-                         [&annulus](MeridionalPoint const& p) { return annulus.height(p); },
-                         [&](Vec3 const& p) { return annulus.along(frame.meridional(p)); },
-                         motion,
-                         displacement};
-  BladeSurface surface = stitch_blade(boundary, blades, input, notes);
-  if (int const left_out = leave_out_splitters(surface); left_out > 0)
-    notes.push_back("blade " + boundary.describe_patch(blades.front()) + ": " + std::to_string(left_out) +
-                    " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
-  BladeSections const sections(surface);
+/// What there is to say of the sections of a blade.
+void note_sections(Boundary const& boundary, std::vector<int> const& blades, CylindricalFrame const& frame,
+                   Annulus const& annulus, BladeSurface const& surface, BladeSections const& sections,
+                   std::vector<std::string>& notes) {
   constexpr double apart = 1e-3;  // chords, radians: more than blunt edges make of the two sides of one blade
   if (auto const spread = sections.edge_spread(); spread.length > apart || spread.angle_rad > apart)
     notes.push_back("blade " + quote_list(names_of_blades(boundary, blades)) + ": its " +
@@ -95,7 +81,6 @@ BladeSections make_sections(Boundary const& boundary, std::vector<int> const& bl
                    : frame.is_plane() ? ", radii "
                                       : ", axial ") +
                   std::to_string(sections.most_upstream()) + " to " + std::to_string(sections.most_downstream()));
-  return sections;
 }
 
 /// Directions of the translations among the periodic connections of the zones, none twice; `followers`: of those alone
@@ -134,18 +119,20 @@ bool lies_across(Boundary const& boundary, std::vector<bool> const& in_row, Vec3
   constexpr double parallel = 1e-6, flat = 1e-3;  // of the distance between the planes
   if (boundary.is_plane()) return norm(cross(boundary.across(), direction)) < parallel * norm(boundary.across());
   double low = inf, high = -inf;
+  // Most rows soon show a node that is on neither plane, whatever heights are still to come.
+  double const off = 1.001 * flat * boundary.size();
   auto const for_heights = [&](auto&& visit) {
     for (std::size_t z = 0; z < boundary.zones().size(); ++z)
       for (Index n = 0; in_row[z] && n < boundary.zones()[z].size(); ++n)
         if (!visit(dot(boundary.coordinates()[boundary.zones()[z].first_node + n], direction))) return false;
     return true;
   };
-  for_heights([&](double h) {
+  bool const may = for_heights([&](double h) {
     low = std::min(low, h);
     high = std::max(high, h);
-    return true;
+    return h - low <= off || high - h <= off;
   });
-  return for_heights([&](double h) { return std::min(h - low, high - h) <= flat * (high - low); });
+  return may && for_heights([&](double h) { return std::min(h - low, high - h) <= flat * (high - low); });
 }
 
 }  // namespace
@@ -192,41 +179,79 @@ Annulus annulus_of_row(Boundary const& boundary, SlipSurfaces const& surfaces, C
           [&] { return walls_of_row(boundary, surfaces, in_row, frame); }};
 }
 
+RowMotion::Row::Row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& of,
+                    SlipSurfaces const& surfaces, std::vector<std::string>& notes)
+    : blades(of),
+      frame(frame_of_row(boundary, motion, blades)),
+      zones(zones_of_row(boundary, blades)),
+      annulus(annulus_of_row(boundary, surfaces, frame, blades)),
+      blade(stitched(boundary, blades, notes)) {}
+
+RowMotion::Blade RowMotion::Row::stitched(Boundary const& boundary, std::vector<int> const& patches,
+                                          std::vector<std::string>& notes) const {
+  BladeInput const input{frame, [this](MeridionalPoint const& p) { return annulus.position(p); },
+                         [this](MeridionalPoint const& p) { return annulus.height(p); },
+                         [this](Vec3 const& p) { return annulus.along(frame.meridional(p)); }};
+  Blade out{patches, stitch_blade(boundary, patches, input, notes)};
+  if (int const left_out = leave_out_splitters(out.surface); left_out > 0)
+    notes.push_back("blade " + boundary.describe_patch(patches.front()) + ": " + std::to_string(left_out) +
+                    " contours of splitter blades are left out; inlet, exit and periodics follow the main blade");
+  return out;
+}
+
+BladeSections RowMotion::Row::sections(Boundary const& boundary, Blade const& of,
+                                       PatchDisplacement const& displacement) const {
+  // Across the flow, what counts is how far the blade departs from keeping its span fraction.
+  auto const motion = [this](Vec3 const& point, Vec3 const& u) {
+    return annulus.components(frame.meridional(point), frame.motion(point, u));
+  };
+  return {of.surface, motions_of(of.surface, boundary, of.patches, {motion, displacement})};
+}
+
 RowMotion::RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
                      SlipSurfaces const& surfaces, PatchDisplacement const& displacement,
-                     std::vector<std::string>& notes)
-    : blades_(blades),
-      frame_(frame_of_row(boundary, motion, blades)),
-      row_zones_(zones_of_row(boundary, blades)),
-      annulus_(annulus_of_row(boundary, surfaces, frame_, blades)),
-      sections_(make_sections(boundary, blades, frame_, annulus_, displacement, notes)),
-      middle_(0.5 * (sections_.most_upstream() + sections_.most_downstream())),
-      inlet_(find_end(boundary, motion, blades, -1, displacement)),
-      exit_(find_end(boundary, motion, blades, +1, displacement)) {}
+                     std::vector<std::string>& notes) {
+  auto const row = std::make_shared<Row>(boundary, motion, blades, surfaces, notes);
+  sections_ = row->sections(boundary, row->blade, displacement);
+  note_sections(boundary, blades, row->frame, row->annulus, row->blade.surface, *sections_, notes);
+  row->middle = 0.5 * (sections_->most_upstream() + sections_->most_downstream());
+  for (int const side : {-1, +1}) row->ends[side < 0 ? 0 : 1] = row->find_end(boundary, motion, *sections_, side);
+  row_ = row;
+  move_ends(boundary, displacement);
+}
 
-bool RowMotion::is_same_row(Boundary const& boundary, std::vector<int> const& blades,
-                            std::vector<int> const& others) const {
+RowMotion::RowMotion(RowMotion const& other, Boundary const& boundary, PatchDisplacement const& displacement)
+    : row_(other.row_), sections_(row_->sections(boundary, row_->blade, displacement)) {
+  move_ends(boundary, displacement);
+}
+
+void RowMotion::move_ends(Boundary const& boundary, PatchDisplacement const& displacement) {
+  for (std::size_t e = 0; e < 2; ++e)
+    if (auto const& blade = row_->ends[e].slides_with) slides_with_[e] = row_->sections(boundary, *blade, displacement);
+}
+
+bool RowMotion::Row::has(Boundary const& boundary, BladeSections const& sections,
+                         std::vector<int> const& others) const {
   if (std::any_of(blades.begin(), blades.end(),
                   [&](int p) { return std::binary_search(others.begin(), others.end(), p); }))
     return true;
-  if (!std::all_of(others.begin(), others.end(), [&](int p) { return row_zones_[boundary.patches()[p].zone]; }))
+  if (!std::all_of(others.begin(), others.end(), [&](int p) { return zones[boundary.patches()[p].zone]; }))
     return false;
   double lo = inf, hi = -inf;
-  for (MeridionalPoint const& p : meridional_points(boundary, frame_, others)) {
-    double const m = annulus_.along(p);
+  for (MeridionalPoint const& p : meridional_points(boundary, frame, others)) {
+    double const m = annulus.along(p);
     lo = std::min(lo, m);
     hi = std::max(hi, m);
   }
-  return lo < sections_.most_downstream() && hi > sections_.most_upstream();
+  return lo < sections.most_downstream() && hi > sections.most_upstream();
 }
 
-RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion const& motion,
-                                   std::vector<int> const& blades, int side,
-                                   PatchDisplacement const& displacement) const {
-  double const edge = side < 0 ? sections_.most_upstream() : sections_.most_downstream();
+RowMotion::End RowMotion::Row::find_end(Boundary const& boundary, ResolvedMotion const& motion,
+                                        BladeSections const& sections, int side) const {
+  double const edge = side < 0 ? sections.most_upstream() : sections.most_downstream();
   auto const beyond = [&](std::vector<MeridionalPoint> const& points, double limit) {
     return std::all_of(points.begin(), points.end(),
-                       [&](auto const& p) { return side * (annulus_.along(p) - limit) > 0; });
+                       [&](auto const& p) { return side * (annulus.along(p) - limit) > 0; });
   };
 
   std::vector<MeridionalPoint> sliding, others;
@@ -234,24 +259,24 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
   for (std::size_t p = 0; p < boundary.patches().size(); ++p) {
     Patch const& patch = boundary.patches()[p];
     auto const* slide = std::get_if<CircumferentialSlideRule>(&motion.patch_rule(int(p)));
-    if (slide != nullptr && is_same_row(boundary, blades, boundary.select_patches(slide->of))) {
-      auto const points = meridional_points(boundary, frame_, {int(p)});
-      if (beyond(points, middle_)) {
+    if (slide != nullptr && has(boundary, sections, boundary.select_patches(slide->of))) {
+      auto const points = meridional_points(boundary, frame, {int(p)});
+      if (beyond(points, middle)) {
         sliding.insert(sliding.end(), points.begin(), points.end());
         if (first_sliding < 0) first_sliding = int(p);
       } else if (std::any_of(points.begin(), points.end(),
-                             [&](auto const& q) { return side * (annulus_.along(q) - middle_) > 0; })) {
+                             [&](auto const& q) { return side * (annulus.along(q) - middle) > 0; })) {
         throw MotionError("patch " + boundary.describe_patch(int(p)) +
                           " has the rule circumferential-slide but lies beside the blade's "
                           "mid-chord at " +
-                          std::string(annulus_.turns()    ? "flow path length "
-                                      : frame_.is_plane() ? "radius "
-                                                          : "axial position ") +
-                          std::to_string(middle_) + "; only patches upstream or downstream of it can slide");
+                          std::string(annulus.turns()    ? "flow path length "
+                                      : frame.is_plane() ? "radius "
+                                                         : "axial position ") +
+                          std::to_string(middle) + "; only patches upstream or downstream of it can slide");
       }
-    } else if (row_zones_[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
-                                          patch.kind != PatchKind::degenerate && patch.kind != PatchKind::region)) {
-      auto const points = meridional_points(boundary, frame_, {int(p)});
+    } else if (zones[patch.zone] && (patch.kind != PatchKind::wall && patch.kind != PatchKind::symmetry &&
+                                     patch.kind != PatchKind::degenerate && patch.kind != PatchKind::region)) {
+      auto const points = meridional_points(boundary, frame, {int(p)});
       if (beyond(points, edge)) others.insert(others.end(), points.begin(), points.end());
     }
   }
@@ -261,13 +286,11 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
   if (end.slides) {
     auto const with = boundary.select_patches(std::get<CircumferentialSlideRule>(motion.patch_rule(first_sliding)).of);
     std::vector<std::string> known;  // the slide's own row says all this
-    if (with != blades)
-      end.slides_with =
-          std::make_shared<BladeSections const>(make_sections(boundary, with, frame_, annulus_, displacement, known));
+    if (with != blades) end.slides_with = stitched(boundary, with, known);
   }
   std::vector<std::pair<double, double>> nodes;
   for (MeridionalPoint const& p : end.slides ? sliding : others) {
-    FlowPosition const at = annulus_.position(p);
+    FlowPosition const at = annulus.position(p);
     nodes.emplace_back(at.h, at.m);
   }
   try {
@@ -286,21 +309,22 @@ RowMotion::End RowMotion::find_end(Boundary const& boundary, ResolvedMotion cons
   return end;
 }
 
-double RowMotion::outermost(Boundary const& boundary, int side) const {
+double RowMotion::Row::outermost(Boundary const& boundary, int side) const {
   double m = -side * inf;
   for (std::size_t z = 0; z < boundary.zones().size(); ++z) {
-    if (!row_zones_[z]) continue;
+    if (!zones[z]) continue;
     Zone const& zone = boundary.zones()[z];
     for (Index n = zone.first_node; n < zone.first_node + zone.size(); ++n) {
-      double const here = annulus_.along(frame_.meridional(boundary.coordinates()[n]));
+      double const here = annulus.along(frame.meridional(boundary.coordinates()[n]));
       m = side < 0 ? std::min(m, here) : std::max(m, here);
     }
   }
   return m;
 }
 
-CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, double edge_m, double chord_fraction) const {
-  CylindricalMotion const edge = sections_.motion(at.h, chord_fraction);
+CylindricalMotion RowMotion::taper(int side, FlowPosition const& at, double edge_m, double chord_fraction) const {
+  End const& end = row_->ends[std::size_t(side)];
+  CylindricalMotion const edge = sections_->motion(at.h, chord_fraction);
   // Nodes of the end itself scatter about its fitted shape by `deviation`: within it, they are at the end.
   double const margin = end.m_of_span ? end.m_of_span->deviation : 0;
   double const x = end.at(at.h);
@@ -309,15 +333,15 @@ CylindricalMotion RowMotion::taper(End const& end, FlowPosition const& at, doubl
   bool const outside = (at.m - x) * (edge_m - x) <= 0;
   double const share = outside ? 0.0 : w;
   double const end_angle = !end.slides       ? 0
-                           : end.slides_with ? end.slides_with->motion(at.h, chord_fraction).angle_rad
+                           : end.slides_with ? slides_with_[std::size_t(side)]->motion(at.h, chord_fraction).angle_rad
                                              : edge.angle_rad;
   return {share * edge.axial, share * edge.radial, end_angle + share * (edge.angle_rad - end_angle)};
 }
 
 double RowMotion::share_over_gap(double h) const {
   constexpr double gap = 1e-4;  // in span: what a blade that reaches its walls may lack
-  double const first = sections_.lowest_span(), last = sections_.highest_span();
-  if (!annulus_.has_walls()) return 1;
+  double const first = sections_->lowest_span(), last = sections_->highest_span();
+  if (!row_->annulus.has_walls()) return 1;
   if (h > last && 1 - last > gap) return std::max(1 - h, 0.0) / (1 - last);
   if (h < first && first > gap) return std::max(h, 0.0) / first;
   return 1;
@@ -330,27 +354,29 @@ CylindricalMotion RowMotion::follow_motion(FlowPosition const& at) const {
 }
 
 CylindricalMotion RowMotion::along_camber(FlowPosition const& at) const {
-  double const leading = sections_.leading(at.h), trailing = sections_.trailing(at.h);
-  if (at.m < leading) return taper(inlet_, at, leading, 0);
-  if (at.m > trailing) return taper(exit_, at, trailing, 1);
-  return sections_.motion(at.h, (at.m - leading) / (trailing - leading));
+  double const leading = sections_->leading(at.h), trailing = sections_->trailing(at.h);
+  if (at.m < leading) return taper(0, at, leading, 0);
+  if (at.m > trailing) return taper(1, at, trailing, 1);
+  return sections_->motion(at.h, (at.m - leading) / (trailing - leading));
 }
 
 bool RowMotion::gives_way_to(int patch) const {
-  return sections_.sliced() && std::binary_search(blades_.begin(), blades_.end(), patch);
+  return sections_->sliced() && std::binary_search(row_->blades.begin(), row_->blades.end(), patch);
 }
 
-bool RowMotion::is_upstream(Vec3 const& point) const { return annulus_.position(frame_.meridional(point)).m < middle_; }
+bool RowMotion::is_upstream(Vec3 const& point) const {
+  return row_->annulus.position(row_->frame.meridional(point)).m < row_->middle;
+}
 
 Vec3 RowMotion::slide(Vec3 const& point) const {
-  FlowPosition const at = annulus_.position(frame_.meridional(point));
-  CylindricalMotion const edge = sections_.motion(at.h, at.m < middle_ ? 0 : 1);
-  return frame_.displacement(point, {0, 0, edge.angle_rad});
+  FlowPosition const at = row_->annulus.position(row_->frame.meridional(point));
+  CylindricalMotion const edge = sections_->motion(at.h, at.m < row_->middle ? 0 : 1);
+  return row_->frame.displacement(point, {0, 0, edge.angle_rad});
 }
 
 Vec3 RowMotion::follow(Vec3 const& point) const {
-  MeridionalPoint const p = frame_.meridional(point);
-  return frame_.displacement(point, annulus_.motion(p, follow_motion(annulus_.position(p))));
+  MeridionalPoint const p = row_->frame.meridional(point);
+  return row_->frame.displacement(point, row_->annulus.motion(p, follow_motion(row_->annulus.position(p))));
 }
 
 }  // namespace gridmorph

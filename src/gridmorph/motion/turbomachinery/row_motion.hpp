@@ -30,8 +30,9 @@ namespace gridmorph {
 /// it is the most upstream or downstream point of the section, found between grid lines by a parabola.
 class BladeSections {
  public:
-  /// Throws MotionError when the sections have no axial chord or the spanwise lines have no span in common.
-  explicit BladeSections(BladeSurface const& blade);
+  /// `motion`: of the nodes, in the components of Annulus. Throws MotionError when the sections have no axial chord or
+  /// the spanwise lines have no span in common.
+  BladeSections(BladeSurface const& blade, std::vector<CylindricalMotion> const& motion);
 
   /// Axial positions of leading and trailing edge. Beyond the first and last section: theirs.
   [[nodiscard]] double leading(double span) const { return leading_.at(span)[0]; }
@@ -159,8 +160,11 @@ class RowMotion {
   /// Throws MotionError when the blade's sections cannot be made or a slide patch lies beside the blade.
   RowMotion(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
             SlipSurfaces const& surfaces, PatchDisplacement const& displacement, std::vector<std::string>& notes);
+  /// The same row where its blades displace by something else: annulus, lines of the blades and ends of the row are
+  /// shared. Cost O(nodes of the blades).
+  RowMotion(RowMotion const& other, Boundary const& boundary, PatchDisplacement const& displacement);
 
-  [[nodiscard]] CylindricalFrame const& frame() const { return frame_; }
+  [[nodiscard]] CylindricalFrame const& frame() const { return row_->frame; }
 
   /// What a node of inlet or exit is displaced by: turned by the angle of the leading edge (upstream of mid-chord) or
   /// trailing edge at this span.
@@ -177,24 +181,46 @@ class RowMotion {
   [[nodiscard]] Vec3 follow(Vec3 const& point) const;
 
  private:
+  /// A blade, whatever it does.
+  struct Blade {
+    std::vector<int> patches;
+    BladeSurface surface;
+  };
   /// Where the taper ends: the inlet or the exit.
   struct End {
     std::optional<RevolutionProfile> m_of_span;  ///< "radius" is the position along the flow, "axial" the span fraction
     double m = 0;                                ///< when there is no such function
     bool slides = false;
-    std::shared_ptr<BladeSections const> slides_with;  ///< another blade of the row; null: this one
+    std::optional<Blade> slides_with;  ///< another blade of the row; nothing: this one
     [[nodiscard]] double at(double span) const { return m_of_span ? (*m_of_span)(span) : m; }
   };
+  /// What of a row does not depend on what its blades do.
+  struct Row {
+    std::vector<int> blades;  ///< ascending
+    CylindricalFrame frame;
+    std::vector<bool> zones;
+    Annulus annulus;
+    Blade blade;
+    double middle = 0;          ///< of the blade along the flow: what lies before it is upstream
+    std::array<End, 2> ends{};  ///< inlet and exit
 
-  [[nodiscard]] End find_end(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& blades,
-                             int side, PatchDisplacement const& displacement) const;
-  /// Whether blades belong to the row: the same patches or some of them, or others beside them (splitters).
-  [[nodiscard]] bool is_same_row(Boundary const& boundary, std::vector<int> const& blades,
-                                 std::vector<int> const& others) const;
-  /// The outermost position along the flow of any node of the row.
-  [[nodiscard]] double outermost(Boundary const& boundary, int side) const;
-  [[nodiscard]] CylindricalMotion taper(End const& end, FlowPosition const& at, double edge_m,
-                                        double chord_fraction) const;
+    /// With its ends still to be found, by the sections of the blade.
+    Row(Boundary const& boundary, ResolvedMotion const& motion, std::vector<int> const& of,
+        SlipSurfaces const& surfaces, std::vector<std::string>& notes);
+    [[nodiscard]] Blade stitched(Boundary const& boundary, std::vector<int> const& patches,
+                                 std::vector<std::string>& notes) const;
+    [[nodiscard]] BladeSections sections(Boundary const& boundary, Blade const& blade,
+                                         PatchDisplacement const& displacement) const;
+    [[nodiscard]] End find_end(Boundary const& boundary, ResolvedMotion const& motion, BladeSections const& sections,
+                               int side) const;
+    /// Whether blades belong to the row: the same patches or some of them, or others beside them (splitters).
+    [[nodiscard]] bool has(Boundary const& boundary, BladeSections const& sections,
+                           std::vector<int> const& others) const;
+    /// The outermost position along the flow of any node of the row.
+    [[nodiscard]] double outermost(Boundary const& boundary, int side) const;
+  };
+
+  [[nodiscard]] CylindricalMotion taper(int side, FlowPosition const& at, double edge_m, double chord_fraction) const;
   /// Components of the motion (see Annulus::components).
   [[nodiscard]] CylindricalMotion follow_motion(FlowPosition const& at) const;
   /// The motion of the camber line at a span fraction (of the nearest section, beyond the blade), tapered beyond its
@@ -204,13 +230,11 @@ class RowMotion {
   /// falls to nothing at the wall.
   [[nodiscard]] double share_over_gap(double h) const;
 
-  std::vector<int> blades_;  ///< ascending
-  CylindricalFrame frame_;
-  std::vector<bool> row_zones_;
-  Annulus annulus_;
-  BladeSections sections_;
-  double middle_;  ///< of the blade along the flow: what lies before it is upstream
-  End inlet_, exit_;
+  void move_ends(Boundary const& boundary, PatchDisplacement const& displacement);
+
+  std::shared_ptr<Row const> row_;
+  std::optional<BladeSections> sections_;
+  std::array<std::optional<BladeSections>, 2> slides_with_;  ///< of the ends that slide with another blade
 };
 
 }  // namespace gridmorph

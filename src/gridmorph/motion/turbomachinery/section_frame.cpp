@@ -21,17 +21,6 @@ Vec3 across(Vec3 const& direction) {
   return unit(cross(direction, least));
 }
 
-/// Stitching looks at no motion here.
-BladeInput geometry_only(CylindricalFrame const& frame, std::function<FlowPosition(MeridionalPoint const&)> position,
-                         double height, std::function<double(Vec3 const&)> along) {
-  return {frame,
-          std::move(position),
-          [height](MeridionalPoint const&) { return height; },
-          std::move(along),
-          [](Vec3 const&, Vec3 const&) { return CylindricalMotion{}; },
-          [](int, std::span<Vec3 const>, std::span<Vec3> out) { std::fill(out.begin(), out.end(), Vec3{}); }};
-}
-
 class BladeFrame final : public SectionFrame {
  public:
   BladeFrame(CylindricalFrame const& frame, Annulus annulus, std::vector<Vec3> const& points)
@@ -67,9 +56,9 @@ class BladeFrame final : public SectionFrame {
   [[nodiscard]] double period() const override { return frame_.is_linear() ? 0 : 2 * std::numbers::pi; }
   [[nodiscard]] double scale_of_t() const override { return frame_.is_linear() ? chord_ : period(); }
   [[nodiscard]] BladeInput stitching() const override {
-    return geometry_only(
-        frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); }, height_,
-        [this](Vec3 const& p) { return annulus_.along(frame_.meridional(p)); });
+    return {frame_, [this](MeridionalPoint const& m) { return annulus_.position(m); },
+            [this](MeridionalPoint const&) { return height_; },
+            [this](Vec3 const& p) { return annulus_.along(frame_.meridional(p)); }};
   }
 
  private:
@@ -104,12 +93,12 @@ class WingFrame final : public SectionFrame {
   [[nodiscard]] double period() const override { return 0; }
   [[nodiscard]] BladeInput stitching() const override {
     // The position along an axis that runs spanwise is all that stitching asks for.
-    return geometry_only(
-        CylindricalFrame(Axis{{0, 0, 0}, span_}),
-        [this](MeridionalPoint const& m) {
-          return FlowPosition{0, (m.axial - lo_) / (hi_ - lo_)};
-        },
-        hi_ - lo_, [this](Vec3 const& p) { return dot(p, streamwise_); });
+    return {CylindricalFrame(Axis{{0, 0, 0}, span_}),
+            [this](MeridionalPoint const& m) {
+              return FlowPosition{0, (m.axial - lo_) / (hi_ - lo_)};
+            },
+            [this](MeridionalPoint const&) { return hi_ - lo_; },
+            [this](Vec3 const& p) { return dot(p, streamwise_); }};
   }
 
  private:

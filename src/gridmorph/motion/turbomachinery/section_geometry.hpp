@@ -38,7 +38,7 @@ class SectionFrame {
   [[nodiscard]] virtual double period() const = 0;
   /// The angle or length of t that tells two lines apart.
   [[nodiscard]] virtual double scale_of_t() const { return period(); }
-  /// What stitch_blade() takes for the span, the flow and the motion of nodes.
+  /// What stitch_blade() takes for the span and the flow.
   [[nodiscard]] virtual BladeInput stitching() const = 0;
 };
 
