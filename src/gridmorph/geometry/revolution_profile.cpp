@@ -59,7 +59,7 @@ double off_polynomial(Points const& p, std::size_t i, std::size_t each_side) {
 double estimate_noise(Points const& p) {
   if (p.size() < least_for_statistics) return 0;
   std::vector<double> chord(p.size() - 4), cubic(chord.size()), quintic(chord.size());
-  detail::for_many({}, "gridmorph::profile::noise", Index(chord.size()), [&](Index n) {
+  detail::for_many("gridmorph::profile::noise", Index(chord.size()), [&](Index n) {
     std::size_t const i = std::size_t(n) + 2;
     Point const &a = p[i - 1], &b = p[i + 1];
     double const t = b.first > a.first ? (p[i].first - a.first) / (b.first - a.first) : 0.5;
@@ -169,7 +169,7 @@ class Slopes {
 
   std::vector<double> all() {
     std::vector<double> s(p_.size());
-    detail::for_many({}, "gridmorph::profile::slopes", Index(n_), [&](Index n) {
+    detail::for_many("gridmorph::profile::slopes", Index(n_), [&](Index n) {
       int const i = int(n);
       if (kink_[i]) {
         s[i] = at_kink(i);
@@ -511,7 +511,7 @@ RevolutionProfile RevolutionProfile::from_points(std::vector<Point> points) {
   }
   profile.bucket_piece = bucket_pieces(profile.knots);
   std::vector<double> off(given.size());
-  detail::for_many({}, "gridmorph::profile::deviation", Index(given.size()),
+  detail::for_many("gridmorph::profile::deviation", Index(given.size()),
                    [&](Index n) { off[n] = std::abs(given[n].second - profile(given[n].first)); });
   for (double const d : off) profile.deviation = std::max(profile.deviation, d);
   return profile;

@@ -221,7 +221,7 @@ std::vector<Vec3> PointField::Impl::sum_of(std::span<double const> factors) cons
 
 std::vector<Stencil const*> PointField::Impl::kept_stencils(std::span<Vec3 const> at) const {
   std::vector<Stencil const*> out(at.size());
-  detail::for_many({}, "gridmorph::point_field::look_up", Index(at.size()), [&](Index n) {
+  detail::for_many("gridmorph::point_field::look_up", Index(at.size()), [&](Index n) {
     auto const known = kept.find(at[n]);
     out[n] = known == kept.end() ? nullptr : &known->second;
   });
@@ -229,7 +229,7 @@ std::vector<Stencil const*> PointField::Impl::kept_stencils(std::span<Vec3 const
   for (std::size_t n = 0; n < at.size(); ++n)
     if (out[n] == nullptr) missing.push_back(n);
   std::vector<Stencil> made(missing.size());
-  detail::for_many({}, "gridmorph::point_field::make", Index(made.size()),
+  detail::for_many("gridmorph::point_field::make", Index(made.size()),
                    [&](Index k) { made[k] = make(at[missing[k]]); });
   for (std::size_t k = 0; k < made.size(); ++k) {
     Vec3 const& q = at[missing[k]];
@@ -245,14 +245,14 @@ void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 c
   std::vector<Vec3> const rotation = rotations(field);
   auto const all = Index(at.size());
   if (iterates) {
-    detail::for_many({}, "gridmorph::point_field::iterate", all,
+    detail::for_many("gridmorph::point_field::iterate", all,
                      [&](Index n) { displacement[n] = apply(make(at[n]), field, rotation); });
     return;
   }
   if (options.keep) {
     std::lock_guard const lock(turn);
     std::vector<Stencil const*> const stencils = kept_stencils(at);
-    detail::for_many({}, "gridmorph::point_field::apply", all,
+    detail::for_many("gridmorph::point_field::apply", all,
                      [&](Index n) { displacement[n] = apply(*stencils[n], field, rotation); });
     return;
   }
@@ -262,7 +262,7 @@ void PointField::Impl::evaluate(std::vector<Vec3> const& field, std::span<Vec3 c
   std::vector<Stencil> stencils(std::size_t(std::min(all, at_once)));
   for (Index begin = 0; begin < all; begin += at_once) {
     Index const count_of = std::min(all - begin, at_once);
-    detail::for_many({}, "gridmorph::point_field::evaluate", count_of, [&](Index n) {
+    detail::for_many("gridmorph::point_field::evaluate", count_of, [&](Index n) {
       stencils[n] = make(at[begin + n]);
       displacement[begin + n] = apply(stencils[n], field, rotation);
     });

@@ -33,7 +33,7 @@ std::vector<std::string> const* blades_of(Rule const& rule) {
 /// displacement(point) of every point, on all cores where they are many.
 template <class Displacement>
 void at_each(std::span<Vec3 const> points, std::span<Vec3> out, Displacement const& displacement) {
-  detail::for_many({}, "gridmorph::boundary_motion", Index(points.size()),
+  detail::for_many("gridmorph::boundary_motion", Index(points.size()),
                    [&](Index n) { out[n] = displacement(points[n]); });
 }
 

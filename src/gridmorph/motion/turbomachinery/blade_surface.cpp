@@ -312,7 +312,7 @@ std::vector<CylindricalMotion> motions_of(BladeSurface const& blade, Boundary co
     first += n_all;
   }
   std::vector<CylindricalMotion> motion(points.size());
-  detail::for_many({}, "gridmorph::motions_of", Index(points.size()),
+  detail::for_many("gridmorph::motions_of", Index(points.size()),
                    [&](Index n) { motion[n] = given.motion(points[n], displacement[n]); });
   std::vector<CylindricalMotion> out(blade.nodes.size());
   for (std::size_t n = 0; n < out.size(); ++n) {
