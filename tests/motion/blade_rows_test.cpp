@@ -4,6 +4,7 @@
 #include "support/expect_error.hpp"
 
 #include <gridmorph/core/error.hpp>
+#include <gridmorph/mesh/as_hexahedra.hpp>
 
 #include <gridmorph/motion/boundary_motion.hpp>
 
@@ -189,6 +190,26 @@ TEST_P(EveryBladeMesh, ARotationAboutTheAxisTurnsEverythingByTheSameAngle) {
   }
 }
 
+/// Whether the rules of a motion at another time give the points what they give where they are made for that time.
+void expect_same_as_made_then(std::shared_ptr<Boundary const> const& boundary, Motion const& first, Motion const& then,
+                              std::vector<std::pair<int, std::vector<Vec3>>> const& points_of_rules) {
+  BoundaryMotion const later = BoundaryMotion(boundary, resolve(boundary->names(), first)).with(then);
+  BoundaryMotion const made_then(boundary, resolve(boundary->names(), then));
+  for (auto const& [rule, points] : points_of_rules)
+    EXPECT_EQ(evaluate(later, rule, points), evaluate(made_then, rule, points)) << "rule " << rule;
+}
+
+TEST_P(EveryBladeMesh, AtAnotherTimeARowMovesAsOneThatIsMadeThen) {
+  Mesh const blocks = row_mesh(GetParam());
+  BladeMotion other = redesign();
+  other.angle = [](double c, double h) { return 0.05 * (1 - h) * c; };
+  for (Mesh const& mesh : {blocks, as_hexahedra(blocks)})
+    expect_same_as_made_then(boundary_of(mesh), row_rules(blade_rule(redesign())), row_rules(blade_rule(other)),
+                             {{slide_number, points_of(blocks, "inlet")},
+                              {slide_number, points_of(blocks, "outlet")},
+                              {follow_number, points_of(blocks, "periodic")}});
+}
+
 TEST_P(EveryBladeMesh, ABladeThatDoesNotMoveMovesNothingBitForBit) {
   Mesh const mesh = row_mesh(GetParam());
   for (Rule const& rule : {Rule{FixedRule{}}, Rule{RigidRule{}}}) {
@@ -293,6 +314,33 @@ TEST(BladeRow, HowTheBladeIsCutAndStoredChangesNothingBeyondRoundOff) {
                                  evaluate(motion_on(b, row_rules(blade_rule(redesign()))), follow_number, points)),
               1e-13);
   }
+}
+
+TEST(BladeRow, AtAnotherTimeEndsSlideWithTheOtherBladeAsItMovesThen) {
+  RowMesh row;
+  row.add(o_blade(161, 41));
+  Surface second = o_blade(161, 41);
+  second.name = "second";
+  second.at = [at = second.at](double s, double t) { return rotation_matrix({1, 0, 0}, pitch) * at(s, t); };
+  row.add(second);
+  row.add(end_wall("hub", 0, 401, 5));
+  row.add(end_wall("case", 1, 401, 5));
+  row.add(inlet_plane(201, 5));
+  row.add(outlet_plane(41, 5));
+  row.add(periodic());
+  Mesh const mesh = row.finish();
+  auto const rules = [](double angle_rad) {
+    Motion motion = row_rules(FixedRule{});
+    motion.rules[slide_number].rule = CircumferentialSlideRule{{"second"}};
+    motion.rules.push_back({{"second"}, make_rigid({.angle_rad = angle_rad, .axis = {{0, 0, 0}, {1, 0, 0}}}), 0, ""});
+    return motion;
+  };
+  auto const points = points_of(mesh, "periodic");
+  BoundaryMotion const now = motion_on(mesh, rules(0.1));
+  EXPECT_NE(evaluate(now.with(rules(0.2)), slide_number, points_of(mesh, "inlet")),
+            evaluate(now, slide_number, points_of(mesh, "inlet")));
+  expect_same_as_made_then(boundary_of(mesh), rules(0.1), rules(0.2),
+                           {{slide_number, points_of(mesh, "inlet")}, {follow_number, points}});
 }
 
 TEST(BladeRow, BladesOfDifferentMotionsAreSaidToBeFollowedByTheirMean) {
