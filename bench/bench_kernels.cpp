@@ -8,7 +8,7 @@
 //   volume/<axis>/<law>/slip_sides          with a finalize pass: two terms           48 bytes, 8 per line parameter
 //   skeleton_sweep                          faces that chains make known              32 bytes
 //   node_copy                               skeleton -> nodes, in place               72 bytes
-//   side_residual                           gather, residuals and borders of sides   104 bytes
+//   side_residual                           gather, residuals and borders of sides   152 bytes
 //   slip_ends/<surface>                     end values of a finalize pass            sizes of its tables, 48 bytes
 //   apply                                   all of it through the Morpher             as the volume pass
 //

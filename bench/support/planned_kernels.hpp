@@ -129,27 +129,18 @@ struct SideResiduals {
   template <class Exec>
   Timed operator()(Exec const& exec, PreparedMorph const& prepared,
                    NodeArrays<typename Exec::memory_space> const& x) const {
-    using Memory = typename Exec::memory_space;
     auto const d = device_plan(exec, prepared.plan(), x.read());
     auto const& stage = d->stages.front();
-    kernels::Field<double> const c = d->residuals.batch().first;
-    typename detail::DevicePlan<Exec>::Copy const gather{stage.gathers.entries, stage.gathers.first_item, d->rotations,
-                                                         d->skeleton.read().first, c};
-    kernels::SideResidual<Memory> const residual{d->lines.chains, d->sides, stage.side_lines, d->ends.read().first, c};
-    kernels::EdgeFill<Memory> const edges{d->lines.chains, d->sides, stage.corrected, c};
-    kernels::SideFill<Memory> const sides{d->lines.chains, d->sides, stage.side_lines, c};
-    kernels::SidesAcross<Memory> const across{d->lines.chains, d->sides, stage.across, c};
+    typename detail::DevicePlan<Exec>::Copy const gather{stage.copies.entries, stage.copies.first_item, d->rotations,
+                                                         d->skeleton.read().first, d->ends.batch().first};
     return {[=] {
               auto const& s = d->stages.front();
-              auto const lines = Index(s.side_lines.extent(0));
-              kernels::launch("gridmorph::bench::side_residual::known", exec, 0, s.gathers.n_items, gather);
-              kernels::launch("gridmorph::bench::side_residual", exec, 0, lines, residual);
-              kernels::launch("gridmorph::bench::side_residual::edges", exec, 0, 4 * Index(s.corrected.extent(0)),
-                              edges);
-              kernels::launch("gridmorph::bench::side_residual::sides", exec, 0, lines, sides);
-              kernels::launch("gridmorph::bench::side_residual::across", exec, across);
+              kernels::launch("gridmorph::bench::side_residual::known", exec, s.ends.n_items, s.copies.n_items, gather);
+              kernels::fill_sides(exec, s.side_nodes, d->lines.chains, d->sides, s.across, d->ends.read().first,
+                                  d->known_sides(d->ends.batch().first), d->residuals.batch().first,
+                                  d->law_knots.data(), d->turns.of_skeleton(0, 0), s.turns);
             },
-            std::int64_t(prepared.plan().stages.front().sides.t.size()), 104};
+            std::int64_t(prepared.plan().stages.front().sides.t.size()), 152};
   }
 };
 

@@ -39,13 +39,11 @@ struct CopyNodes {
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
     int const entry = entry_of(first_item, item);
     NodeCopy const& copy = copies(entry);
-    Index const local = item - first_item(entry), per_row = tiles(copy.n_p, Width);
-    Index const q = local / per_row, begin = (local % per_row) * Width;
-    Index const end = begin + Width < copy.n_p ? begin + Width : copy.n_p;
-    for (Index p = begin; p < end; ++p) {
-      Vec3 v = source[copy.source + p * copy.source_stride_p + q * copy.source_stride_q];
+    RowOfNodes const row = row_of_nodes<Width>(copy.n_p, item - first_item(entry));
+    for (int p = row.begin; p < row.end; ++p) {
+      Vec3 v = source[copy.source + p * copy.source_stride_p + row.q * copy.source_stride_q];
       if (copy.matrix >= 0) v = matrices(copy.matrix) * v;
-      Index const to = copy.destination + p * copy.destination_stride_p + q * copy.destination_stride_q;
+      Index const to = copy.destination + p * copy.destination_stride_p + row.q * copy.destination_stride_q;
       if constexpr (Move) v = moved(baseline[to], v);
       destination.set(to, v);
     }

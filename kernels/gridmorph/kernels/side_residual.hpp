@@ -1,5 +1,5 @@
 // Fills the side arrays of corrected chains: residuals where the side is known, Boolean sums where it is not.
-// Four launches, each over lines of surfaces only; formulas in side_correction.hpp.
+// Two launches over the nodes of sides, edges first; formulas in side_correction.hpp.
 #pragma once
 
 #include <gridmorph/kernels/launch.hpp>
@@ -10,140 +10,203 @@ namespace gridmorph::kernels {
 /// Edge along s that borders side q at its lower (upper = 0) or upper end.
 KOKKOS_INLINE_FUNCTION int edge_of_side(int q, int upper) { return q < 2 ? q + 2 * upper : upper + 2 * (q - 2); }
 
-/// What is known at one node of a corrected chain's side.
+/// A line on a side of a corrected chain, and which of its nodes are known.
 template <class MemorySpace>
-KOKKOS_INLINE_FUNCTION bool side_node_is_known(SideTable<MemorySpace> const& sides, Chain const& chain, int q, int n_w,
-                                               int position, int w) {
-  if (position == 0 || (position == chain.n_s - 1 && !chain.open_end)) return true;
-  int m = 0;
-  while (sides.junctions(chain.first_junction + m + 1).position < position) ++m;
-  Junction const& next = sides.junctions(chain.first_junction + m + 1);
-  bool const at_junction = next.position == position;
-  unsigned const known = at_junction ? next.known_across : sides.junctions(chain.first_junction + m).known_along;
-  int const category = end_category(w, n_w);
-  int const bit = category == 1 ? q : 4 + edge_of_side(q, category / 2);
-  return (known >> bit) & 1u;
+struct KnownLine {
+  Kokkos::View<Junction const*, MemorySpace> const& junctions;
+  Chain const& chain;
+  int bit;  ///< of Junction: its side, or 4 + its edge
+
+  KOKKOS_INLINE_FUNCTION static KnownLine of(SideTable<MemorySpace> const& sides, Chain const& chain, int q, int n_w,
+                                             int w) {
+    int const category = end_category(w, n_w);
+    return {sides.junctions, chain, category == 1 ? q : 4 + edge_of_side(q, category / 2)};
+  }
+
+  KOKKOS_INLINE_FUNCTION Junction const& junction(int m) const { return junctions(chain.first_junction + m); }
+  /// The block that ends with a node, or has it inside; 0 for the first node. m: one not above it.
+  KOKKOS_INLINE_FUNCTION int block(int position, int m = 0) const {
+    while (junction(m + 1).position < position) ++m;
+    return m;
+  }
+  KOKKOS_INLINE_FUNCTION bool is_end(int position) const {
+    return position == 0 || (position == chain.n_s - 1 && !chain.open_end);
+  }
+  KOKKOS_INLINE_FUNCTION bool is_known(int position) const { return is_known(position, block(position)); }
+  /// m: its block.
+  KOKKOS_INLINE_FUNCTION bool is_known(int position, int m) const {
+    if (is_end(position)) return true;
+    Junction const& next = junction(m + 1);
+    unsigned const known = next.position == position ? next.known_across : junction(m).known_along;
+    return (known >> bit) & 1u;
+  }
+  /// The known node that is nearest to an unknown one, above it (step 1) or below (-1); n_s where an open end comes
+  /// first. Of a block all nodes inside are known, or none.
+  KOKKOS_INLINE_FUNCTION int nearest_known(int position, int step) const {
+    while (position < chain.n_s && !is_known(position)) {
+      int const m = block(position);
+      position = junction(m + 1).position == position ? position + step : junction(step > 0 ? m + 1 : m).position;
+    }
+    return position;
+  }
+};
+
+/// Whether the volume wants what sides have beyond their edges: where all pairs of sides are blended
+/// (side_correction.hpp).
+KOKKOS_INLINE_FUNCTION bool wants_beyond_edges(Chain const& chain) {
+  return !chain.blends_along(0) && !chain.blends_along(1);
+}
+/// Whether residuals of known nodes are where they stay before SideFill runs, so that there is less to do. Not where an
+/// item is one node: the choice takes registers.
+template <int Width>
+KOKKOS_INLINE_FUNCTION bool stay_in_place(Chain const& chain) {
+  return Width > 1 && !wants_beyond_edges(chain);
 }
 
-/// The residual c = u - interpolant at the known nodes of a side line, 0 at the others. c comes in as the displacements
-/// of the known nodes, in the chain's frame.
-template <class MemorySpace>
+/// The nodes of one side of a corrected chain, as work.
+struct SideNodes {
+  std::int32_t side;
+  std::int32_t n_s, n_w;  ///< nodes along its lines, lines
+};
+
+/// The residuals c = u - interpolant on edges along s, all of them: where an edge is not known linear in t between the
+/// nearest known nodes, constant to an open end. Elsewhere on sides those of known nodes, 0 for the others; these
+/// go in place of the displacements, so that SideFill changes no node that others read, unless they stay in place.
+/// One item per row of at most `Width` nodes.
+template <class MemorySpace, int Width, Turning Turns = Turning::any>
 struct SideResidual {
+  Kokkos::View<SideNodes const*, MemorySpace> nodes;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per side, and one past the last
   Kokkos::View<Chain const*, MemorySpace> chains;
   SideTable<MemorySpace> sides;
-  Kokkos::View<SideLine const*, MemorySpace> side_lines;
   Field<double const> ends;
+  Field<double> known;  ///< displacements of known nodes, chain frame
   Field<double> c;
   double const* law_knots = nullptr;
   SkeletonTurns turns = {};
 
-  [[nodiscard]] Index size() const { return Index(side_lines.extent(0)); }
+  static Index items(SideNodes const& on) { return tiles(on.n_s, Width) * on.n_w; }
+
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    SideLine const& on = side_lines(item);
-    Side const& side = sides.sides(on.side);
+    int const entry = entry_of(first_item, item);
+    Side const& side = sides.sides(nodes(entry).side);
+    auto const [w, begin, end] = row_of_nodes<Width>(nodes(entry).n_s, item - first_item(entry));
     Chain const& chain = chains(side.chain);
-    int const q = on.side - chain.first_side;
-    int const a = q < 2 ? (q == 0 ? 0 : chain.n_a - 1) : on.w, b = q < 2 ? on.w : (q == 2 ? 0 : chain.n_b - 1);
-    Index const at = side.first + Index(chain.n_s) * on.w;
-    for (int position = 0; position < chain.n_s; ++position) {
-      bool const end = position == 0 || (position == chain.n_s - 1 && !chain.open_end);
-      Vec3 residual;
-      if (!end && side_node_is_known(sides, chain, q, side.n_w, position, on.w)) {
-        double const t = sides.t(at + position);
-        residual = c[at + position] - between_ends(ends, law_knots, chain, a, b, t);
-        if (chain.turn != TurnLaw::none)
-          residual += -turned_between(turns.ends, chain, a, b, t, turns.side_position[at + position]);
-      }
-      c.set(at + position, residual);
+    int const q = nodes(entry).side - chain.first_side, category = end_category(w, side.n_w);
+    // An edge lies on two sides: the first of them has what is known of it.
+    bool const edge = category != 1;
+    int const first = edge && q >= 2 ? category / 2 : q;
+    Line const line(*this, chain, first, first == q ? w : q == 2 ? 0 : sides.sides(chain.first_side + first).n_w - 1);
+    Index const at = side.first + Index(chain.n_s) * w;
+    Field<double> const& to = edge || stay_in_place<Width>(chain) ? c : known;
+    for (int p = begin, m = 0; p < end; ++p) {
+      m = line.known.block(p, m);
+      to.set(at + p, value(line, p, line.known.is_known(p, m), edge));
     }
   }
-};
 
-/// Fills unknown stretches of the four edges along s: linear in t between the nearest known nodes, constant to an open
-/// end. One item per edge; items = 4 * corrected chains, chain numbers in `corrected`.
-template <class MemorySpace>
-struct EdgeFill {
-  Kokkos::View<Chain const*, MemorySpace> chains;
-  SideTable<MemorySpace> sides;
-  Kokkos::View<std::int32_t const*, MemorySpace> corrected;
-  Field<double> c;
+ private:
+  struct Line {
+    KnownLine<MemorySpace> known;
+    Index at;  ///< its first node in side arrays
+    int a, b;
+    KOKKOS_INLINE_FUNCTION Line(SideResidual const& on, Chain const& chain, int q, int w)
+        : known(KnownLine<MemorySpace>::of(on.sides, chain, q, on.sides.sides(chain.first_side + q).n_w, w)),
+          at(on.sides.sides(chain.first_side + q).first + Index(chain.n_s) * w),
+          a(q < 2 ? (q == 0 ? 0 : chain.n_a - 1) : w),
+          b(q < 2 ? w : (q == 2 ? 0 : chain.n_b - 1)) {}
+  };
 
-  [[nodiscard]] Index size() const { return 4 * Index(corrected.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    Chain const& chain = chains(corrected(item / 4));
-    int const e = int(item % 4);
-    int const q = e % 2, partner = 2 + e / 2;
-    Side const& side = sides.sides(chain.first_side + q);
-    Side const& other = sides.sides(chain.first_side + partner);
-    int const w = e / 2 == 0 ? 0 : side.n_w - 1;
-    Index const at = side.first + Index(chain.n_s) * w;
-    Index const there = other.first + Index(chain.n_s) * (e % 2 == 0 ? 0 : other.n_w - 1);
-    auto fill = [&](int from, int to, bool open) {
-      Vec3 const c0 = c[at + from], c1 = open ? c0 : c[at + to];
-      double const t0 = sides.t(at + from), t1 = sides.t(at + to);
-      for (int p = from + 1; p < (open ? to + 1 : to); ++p) {
-        double const f = t1 > t0 ? (sides.t(at + p) - t0) / (t1 - t0) : double(p - from) / (to - from);
-        c.set(at + p, (1 - f) * c0 + f * c1);
-      }
-    };
-    int last = 0;
-    for (int p = 1; p < chain.n_s; ++p)
-      if (side_node_is_known(sides, chain, q, side.n_w, p, w)) {
-        if (p > last + 1) fill(last, p, false);
-        last = p;
-      }
-    if (last < chain.n_s - 1) fill(last, chain.n_s - 1, true);
-    for (int p = 0; p < chain.n_s; ++p) c.set(there + p, c[at + p]);
+  /// Of a known node.
+  KOKKOS_INLINE_FUNCTION Vec3 residual(Line const& line, int position) const {
+    if (line.known.is_end(position)) return {};
+    Chain const& chain = line.known.chain;
+    Index const n = line.at + position;
+    double const t = sides.t(n);
+    Vec3 r = known[n] - between_ends(ends, law_knots, chain, line.a, line.b, t);
+    if constexpr (Turns != Turning::none)
+      if (chain.turn != TurnLaw::none)
+        r += -turned_between<Turns>(turns.ends, chain, line.a, line.b, t, turns.side_position[n]);
+    return r;
+  }
+  /// Of any node; those that are not known have one on edges only.
+  KOKKOS_INLINE_FUNCTION Vec3 value(Line const& line, int position, bool is_known, bool edge) const {
+    if (!is_known && !edge) return {};
+    int const from = is_known ? position : line.known.nearest_known(position, -1);
+    Vec3 const c0 = residual(line, from);
+    if (is_known) return c0;
+    int const n_s = line.known.chain.n_s, above = line.known.nearest_known(position, 1);
+    int const to = above < n_s ? above : n_s - 1;
+    Vec3 const c1 = above < n_s ? residual(line, to) : c0;
+    double const t0 = sides.t(line.at + from), t1 = sides.t(line.at + to);
+    double const f = t1 > t0 ? (sides.t(line.at + position) - t0) / (t1 - t0) : double(position - from) / (to - from);
+    return (1 - f) * c0 + f * c1;
   }
 };
 
-/// Fills unknown faces of the sides, and the unknown edges across them: Boolean sum from the face's four borders. Then
-/// c' = c - edges where the correction asks for that. One item per side line; nothing is done on edges.
-template <class MemorySpace>
+/// Residuals of the nodes between the edges of sides: Boolean sums of the borders of faces that are not known, and of
+/// edges across that are not. Then c' = c - edges where the correction asks for that. One item per row of at most
+/// `Width` nodes; nothing is done on edges.
+template <class MemorySpace, int Width>
 struct SideFill {
+  Kokkos::View<SideNodes const*, MemorySpace> nodes;
+  Kokkos::View<Index const*, MemorySpace> first_item;  ///< per side, and one past the last
   Kokkos::View<Chain const*, MemorySpace> chains;
-  SideTable<MemorySpace> sides;
-  Kokkos::View<SideLine const*, MemorySpace> side_lines;
+  SideTable<MemorySpace> sides;  ///< of edges
+  Field<double const> known;     ///< residuals of known nodes, unless they stay in place
   Field<double> c;
 
-  [[nodiscard]] Index size() const { return Index(side_lines.extent(0)); }
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    SideLine const& on = side_lines(item);
-    Side const& side = sides.sides(on.side);
-    if (end_category(on.w, side.n_w) != 1) return;
+    int const entry = entry_of(first_item, item);
+    Side const& side = sides.sides(nodes(entry).side);
+    int const n_s = nodes(entry).n_s;
+    auto const [w, begin, end] = row_of_nodes<Width>(n_s, item - first_item(entry));
+    if (end_category(w, side.n_w) != 1) return;
     Chain const& chain = chains(side.chain);
-    int const q = on.side - chain.first_side;
-    Index const line = side.first + Index(chain.n_s) * on.w;
-    int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : on.w);
-    int const b = q == 2 ? 0 : (q == 3 ? chain.n_b - 1 : on.w);
-    auto fraction_across = [&](int p) { return sides.across(chain, q < 2 ? 1 : 0, a, b, sides.t(line + p)); };
-    auto between_edges = [&](int p, double f) {
-      double const t = sides.t(line + p);
+    int const q = nodes(entry).side - chain.first_side;
+    int const a = q == 0 ? 0 : (q == 1 ? chain.n_a - 1 : w), b = q == 2 ? 0 : (q == 3 ? chain.n_b - 1 : w);
+    Index const at = side.first + Index(n_s) * w;
+    auto const line = KnownLine<MemorySpace>::of(sides, chain, q, side.n_w, w);
+    auto between_edges = [&](int p) {
+      double const t = sides.t(at + p), f = sides.across(chain, q < 2 ? 1 : 0, a, b, t);
       return (1 - f) * sides.at(chain, q, 0, t, p) + f * sides.at(chain, q, side.n_w - 1, t, p);
     };
-    for (int m = 0; m <= chain.n_blocks; ++m) {
-      int const p = sides.junctions(chain.first_junction + m).position;
-      if (!side_node_is_known(sides, chain, q, side.n_w, p, on.w))
-        c.set(line + p, between_edges(p, fraction_across(p)));
-    }
-    for (int m = 0; m < chain.n_blocks; ++m) {
-      Junction const& j = sides.junctions(chain.first_junction + m);
-      if ((j.known_along >> q) & 1u) continue;
-      int const p0 = j.position, p1 = sides.junctions(chain.first_junction + m + 1).position;
-      double const t0 = sides.t(line + p0), t1 = sides.t(line + p1);
-      // Residual of the borders along s against the borders across: added between the edges.
-      Vec3 const r0 = c[line + p0] - between_edges(p0, fraction_across(p0));
-      Vec3 const r1 = c[line + p1] - between_edges(p1, fraction_across(p1));
-      for (int p = p0 + 1; p < p1; ++p) {
-        double const f = t1 > t0 ? (sides.t(line + p) - t0) / (t1 - t0) : double(p - p0) / (p1 - p0);
-        c.set(line + p, between_edges(p, fraction_across(p)) + (1 - f) * r0 + f * r1);
+    // Of the borders across, what they have beyond what is between the borders along s: added between the edges.
+    bool const less_edges = wants_beyond_edges(chain), in_place = stay_in_place<Width>(chain);
+    Field<double const> const residual = in_place ? Field<double const>{c.x, c.y, c.z, c.stride} : known;
+    auto beyond_edges = [&](int p) { return line.is_known(p) ? residual[at + p] - between_edges(p) : Vec3{}; };
+    int filled[2] = {-1, -1};  // borders that `beyond` is of
+    Vec3 beyond[2];
+    for (int p = begin, m = 0; p < end; ++p) {
+      m = line.block(p, m);
+      bool const is_known = line.is_known(p, m);
+      if (is_known && !less_edges) {
+        if (!in_place)
+          c.set(at + p, residual[at + p]);
+        else if (p > 0 && p < line.junction(m + 1).position)
+          p = line.junction(m + 1).position - 1;  // all of its block is known
+        continue;
       }
+      Vec3 const between = between_edges(p);
+      Vec3 v = between;
+      if (is_known) {
+        v = residual[at + p];
+      } else if (p < line.junction(m + 1).position) {
+        int const borders[2] = {line.junction(m).position, line.junction(m + 1).position};
+        double const t0 = sides.t(at + borders[0]), t1 = sides.t(at + borders[1]);
+        double const f =
+            t1 > t0 ? (sides.t(at + p) - t0) / (t1 - t0) : double(p - borders[0]) / (borders[1] - borders[0]);
+        for (int upper = 0; upper < 2; ++upper) {
+          if (filled[upper] != borders[upper]) beyond[upper] = beyond_edges(borders[upper]);
+          filled[upper] = borders[upper];
+          v = v + (upper == 0 ? 1 - f : f) * beyond[upper];
+        }
+      }
+      c.set(at + p, less_edges ? v - between : v);
     }
-    // Where all pairs of sides are blended, the volume wants what a side has beyond its edges (side_correction.hpp).
-    if (chain.blends_along(0) || chain.blends_along(1)) return;
-    for (int p = 0; p < chain.n_s; ++p) c.set(line + p, c[line + p] - between_edges(p, fraction_across(p)));
   }
 };
+
 /// Copies sides with their nodes in the other order (Side::across): rows of nodes that run from line to line read
 /// neighbours there. One item per piece of a side.
 template <class MemorySpace>
@@ -166,21 +229,25 @@ struct SidesAcross {
   }
 };
 
-/// Sides of the chains in `corrected`. c comes in as the displacements of the known nodes, in the chain's frame; it is
-/// the array that `sides` reads.
+/// Sides listed in `nodes`. known: the displacements of their known nodes, in the chain's frame, on which residuals are
+/// worked out in place; c is the array that `sides` reads. with_turns: whether chains turn.
 template <class Exec>
-void fill_sides(Exec const& exec, Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
+void fill_sides(Exec const& exec, TileList<SideNodes, typename Exec::memory_space> const& nodes,
+                Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                 SideTable<typename Exec::memory_space> const& sides,
-                Kokkos::View<SideLine const*, typename Exec::memory_space> const& side_lines,
-                Kokkos::View<std::int32_t const*, typename Exec::memory_space> const& corrected,
                 Kokkos::View<SideLine const*, typename Exec::memory_space> const& across,
-                Field<double const> const& ends, Field<double> const& c, double const* law_knots = nullptr,
-                SkeletonTurns const& turns = {}) {
+                Field<double const> const& ends, Field<double> const& known, Field<double> const& c,
+                double const* law_knots, SkeletonTurns const& turns, bool with_turns) {
   using MemorySpace = typename Exec::memory_space;
-  launch("gridmorph::side_residual", exec,
-         SideResidual<MemorySpace>{chains, sides, side_lines, ends, c, law_knots, turns});
-  launch("gridmorph::side_residual::edges", exec, EdgeFill<MemorySpace>{chains, sides, corrected, c});
-  launch("gridmorph::side_residual::sides", exec, SideFill<MemorySpace>{chains, sides, side_lines, c});
+  constexpr int width = TileShape<Exec>::row;
+  with_turning<TileShape<Exec>::host>(with_turns, turns.ends, [&](auto kind) {
+    launch("gridmorph::side_residual", exec, 0, nodes.n_items,
+           SideResidual<MemorySpace, width, decltype(kind)::value>{nodes.entries, nodes.first_item, chains, sides, ends,
+                                                                   known, c, law_knots, turns});
+  });
+  launch("gridmorph::side_residual::sides", exec, 0, nodes.n_items,
+         SideFill<MemorySpace, width>{
+             nodes.entries, nodes.first_item, chains, sides, {known.x, known.y, known.z, known.stride}, c});
   launch("gridmorph::side_residual::across", exec, SidesAcross<MemorySpace>{chains, sides, across, c});
 }
 

@@ -49,8 +49,9 @@ struct SkeletonTurns {
   Field<double const> side_position;
 };
 
-/// One item per row of at most `Width` nodes. With `Add` the value is added to what is there.
-template <class MemorySpace, int Width, bool Add>
+/// One item per row of at most `Width` nodes. With `Add` the value is added to what is there. Sides: whether chains may
+/// have some that are known.
+template <class MemorySpace, int Width, bool Add, Turning Turns = Turning::any, bool Sides = true>
 struct SweepSkeleton {
   Kokkos::View<SkeletonSweep const*, MemorySpace> sweeps;
   Kokkos::View<Index const*, MemorySpace> first_item;  ///< per sweep, and one past the last
@@ -69,38 +70,50 @@ struct SweepSkeleton {
     int const entry = entry_of(first_item, item);
     SkeletonSweep const& sweep = sweeps(entry);
     Chain const& chain = chains(sweep.chain);
-    Index const local = item - first_item(entry), per_row = tiles(sweep.n_p, Width);
-    int const q = int(local / per_row), begin = int(local % per_row) * Width;
-    int const end = begin + Width < sweep.n_p ? begin + Width : sweep.n_p;
+    auto const [q, begin, end] = row_of_nodes<Width>(sweep.n_p, item - first_item(entry));
     for (int p = begin; p < end; ++p) {
       int const a = sweep.a[0] + p * sweep.a[1] + q * sweep.a[2], b = sweep.b[0] + p * sweep.b[1] + q * sweep.b[2];
       double const f = sweep.t < 0 ? 0 : t[sweep.t + p * sweep.t_p + q * sweep.t_q];
       Vec3 v = between_ends(ends, law_knots, chain, a, b, f);
       Index const slot = sweep.slot + p + q * sweep.slot_q;
-      if (chain.turn != TurnLaw::none) {
-        v += turned_between(turns.ends, chain, a, b, f, turns.position[sweep.x + p + q * sweep.n_p]);
-        Vec3 const turn = turn_between_ends(turns.end_turns, chain, a, b, f);
-        turns.slot_turns.set(slot, sweep.matrix >= 0 ? matrices(sweep.matrix) * turn : turn);
-      }
-      if (chain.first_side >= 0) v += sides.correction(chain, sweep.s[0] + p * sweep.s[1] + q * sweep.s[2], a, b, f);
+      if constexpr (Turns != Turning::none)
+        if (chain.turn != TurnLaw::none) {
+          v += turned_between<Turns>(turns.ends, chain, a, b, f, turns.position[sweep.x + p + q * sweep.n_p]);
+          Vec3 const turn = turn_between_ends(turns.end_turns, chain, a, b, f);
+          turns.slot_turns.set(slot, sweep.matrix >= 0 ? matrices(sweep.matrix) * turn : turn);
+        }
+      if (Sides && chain.first_side >= 0)
+        v += sides.correction(chain, sweep.s[0] + p * sweep.s[1] + q * sweep.s[2], a, b, f);
       if (sweep.matrix >= 0) v = matrices(sweep.matrix) * v;
       if constexpr (Add) v = u[slot] + v;
       u.set(slot, v);
     }
   }
 };
-/// Finds u of the slots that the sweeps name, or with `Add` what is added to it. ends: of the chains' lines; t: line
-/// parameters.
+/// Finds u of the slots that the sweeps name, or with `Add`, where chains neither turn nor have known sides, what is
+/// added to it. ends: of the chains' lines; t: line parameters. with_turns, with_sides: what chains have.
 template <bool Add, class Exec>
 void sweep_skeleton(Exec const& exec, TileList<SkeletonSweep, typename Exec::memory_space> const& sweeps,
                     Kokkos::View<Chain const*, typename Exec::memory_space> const& chains,
                     Kokkos::View<Mat3 const*, typename Exec::memory_space> const& matrices,
                     SideTable<typename Exec::memory_space> const& sides, double const* t,
-                    Field<double const> const& ends, Field<double> const& u, double const* law_knots = nullptr,
-                    SkeletonTurns const& turns = {}) {
-  launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, sweeps.n_items,
-         SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add>{
-             sweeps.entries, sweeps.first_item, chains, matrices, sides, t, ends, u, law_knots, turns});
+                    Field<double const> const& ends, Field<double> const& u, double const* law_knots,
+                    SkeletonTurns const& turns, bool with_turns, bool with_sides) {
+  auto const run = [&]<Turning Turns, bool Sides>() {
+    launch(Add ? "gridmorph::skeleton_spread" : "gridmorph::skeleton_sweep", exec, 0, sweeps.n_items,
+           SweepSkeleton<typename Exec::memory_space, TileShape<Exec>::row, Add, Turns, Sides>{
+               sweeps.entries, sweeps.first_item, chains, matrices, sides, t, ends, u, law_knots, turns});
+  };
+  constexpr bool host = TileShape<Exec>::host;
+  if constexpr (Add)
+    run.template operator()<Turning::none, false>();
+  else
+    with_turning<host>(with_turns, turns.ends, [&](auto kind) {
+      if (host || with_sides)
+        run.template operator()<decltype(kind)::value, true>();
+      else
+        run.template operator()<decltype(kind)::value, host>();
+    });
 }
 
 }  // namespace gridmorph::kernels

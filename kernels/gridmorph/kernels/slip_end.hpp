@@ -45,15 +45,24 @@ struct SlipEndBaselines {
   }
 };
 
-/// Ends that slide on nothing: no correction.
-struct ClearEnds {
-  Field<double> values;
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { values.set(n, {}); }
+/// What ends slide on. A kernel that leaves out what its ends have not needs a fraction of the registers and no stack,
+/// and so a GPU runs several times as many of its items at once; the host has one kernel for all.
+enum class SlipEndKind {
+  simple,  ///< one surface each, of SlipKinds::simple
+  smooth,  ///< surfaces of SlipKinds::smooth
+  any
+};
+inline constexpr int n_slip_end_kinds = 3;
+
+/// Ascending items: ends that slide on nothing are before first[0], those of kind k from first[k] to first[k + 1].
+struct SlipEndsByKind {
+  Index first[n_slip_end_kinds + 1] = {};
 };
 
 /// The values of slip ends, d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative
-/// where u changes by `rate` per unit of time: constrain_to_all() of slip_edge.hpp.
-template <class MemorySpace, bool Rate>
+/// where u changes by `rate` per unit of time: constrain_to_all() of slip_edge.hpp. One item per end that slides on
+/// nothing, whose value is zero, then one per slip end.
+template <class MemorySpace, bool Rate, SlipEndKind Kind = SlipEndKind::any>
 struct SlipEndValues {
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
   Kokkos::View<SlipEndBaseline const*, MemorySpace> baselines;
@@ -61,27 +70,40 @@ struct SlipEndValues {
   Kokkos::View<Mat3 const*, MemorySpace> matrices;
   Field<double const> u, rate;
   Field<double> values;
+  Kokkos::View<Index const*, MemorySpace> at_rest = {};  ///< values of ends that slide on nothing
 
-  [[nodiscard]] Index size() const { return Index(ends.extent(0)); }
+  static constexpr SlipKinds kinds = Kind == SlipEndKind::simple   ? SlipKinds::simple
+                                     : Kind == SlipEndKind::smooth ? SlipKinds::smooth
+                                                                   : SlipKinds::any;
+
+  /// The same for ends of another kind.
+  template <SlipEndKind Other>
+  [[nodiscard]] SlipEndValues<MemorySpace, Rate, Other> of_kind() const {
+    return {ends, baselines, surfaces, matrices, u, rate, values, at_rest};
+  }
+
   KOKKOS_INLINE_FUNCTION void operator()(Index item) const {
-    Index const slot = ends(item).slot;
-    values.set(ends(item).value, change(item, u[slot], Rate ? rate[slot] : Vec3{}));
+    Index const n = item - Index(at_rest.extent(0));
+    if (n < 0) return values.set(at_rest(item), {});
+    Index const slot = ends(n).slot;
+    values.set(ends(n).value, change(n, u[slot], Rate ? rate[slot] : Vec3{}));
   }
 
   /// The value d of one end whose slot is displaced by u; with `Rate` its derivative.
-  KOKKOS_INLINE_FUNCTION Vec3 change(Index item, Vec3 const& u_slot, Vec3 const& rate_slot) const {
-    SlipEnd const& end = ends(item);
-    SlipEndBaseline const& baseline = baselines(item);
+  KOKKOS_INLINE_FUNCTION Vec3 change(Index n, Vec3 const& u_slot, Vec3 const& rate_slot) const {
+    SlipEnd const& end = ends(n);
+    SlipEndBaseline const& baseline = baselines(n);
     Vec3 const given = in_frame(end.to_node, u_slot), given_rate = in_frame(end.to_node, rate_slot);
     Vec3 wanted = given, wanted_rate = given_rate;
-    int const count = end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
-    if constexpr (Rate)
-      if (count == 1) {  // needs no displacement for it
-        wanted_rate =
-            surfaces(end.surface[0]).constrain_rate(baseline.position, baseline.own_offset[0], given, given_rate);
-        return in_frame(end.to_chain, wanted_rate - given_rate);
-      }
-    constrain_to_all<Rate>(count, Surfaces{surfaces, end}, Offsets{baseline}, baseline.position, wanted, wanted_rate);
+    int const count = Kind == SlipEndKind::simple || end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
+    Surfaces const of_end{surfaces, end};
+    Offsets const own{baseline};
+    if (Rate && count == 1)  // needs no displacement for it
+      wanted_rate = of_end(0).constrain_rate(baseline.position, own(0), given, given_rate);
+    else if constexpr (Kind == SlipEndKind::simple)
+      wanted = of_end(0).constrain(baseline.position, own(0), given);
+    else
+      constrain_to_all<Rate>(count, of_end, own, baseline.position, wanted, wanted_rate);
     if constexpr (Rate) return in_frame(end.to_chain, wanted_rate - given_rate);
     bool const left_alone = norm(wanted - given) <= end.tolerance && end.tolerance > 0;
     return left_alone ? Vec3{} : in_frame(end.to_chain, wanted - given);
@@ -92,7 +114,9 @@ struct SlipEndValues {
   struct Surfaces {
     Kokkos::View<SlipSurfaceView const*, MemorySpace> const& all;
     SlipEnd const& end;
-    KOKKOS_INLINE_FUNCTION SlipSurfaceView const& operator()(int m) const { return all(end.surface[m]); }
+    KOKKOS_INLINE_FUNCTION SlipSurfaceOf<kinds> operator()(int m) const {
+      return SlipSurfaceOf<kinds>(all(end.surface[m]));
+    }
   };
   struct Offsets {
     SlipEndBaseline const& baseline;
@@ -113,15 +137,20 @@ void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename 
          SlipEndBaselines<typename Exec::memory_space>{ends, surfaces, x, baselines});
 }
 
-/// End values first_value, ..., first_value + n_values - 1 of a pass: zero where its lines do not slide, `kernel` for
-/// the others.
+/// End values of a pass: zero where its lines do not slide, `kernel` for the others.
 template <class Exec, bool Rate>
-void slip_ends(Exec const& exec, Index first_value, Index n_values,
+void slip_ends(Exec const& exec, SlipEndsByKind const& items,
                SlipEndValues<typename Exec::memory_space, Rate> const& kernel) {
-  Field<double> const& values = kernel.values;
-  launch("gridmorph::slip_ends::clear", exec, 0, n_values,
-         ClearEnds{{values.x + first_value, values.y + first_value, values.z + first_value}});
-  launch("gridmorph::slip_ends", exec, kernel);
+  if constexpr (TileShape<Exec>::host) {
+    launch("gridmorph::slip_ends", exec, 0, items.first[n_slip_end_kinds], kernel);
+  } else {
+    auto const of = [&]<SlipEndKind kind>(Index begin) {
+      launch("gridmorph::slip_ends", exec, begin, items.first[int(kind) + 1], kernel.template of_kind<kind>());
+    };
+    of.template operator()<SlipEndKind::simple>(0);
+    of.template operator()<SlipEndKind::smooth>(items.first[int(SlipEndKind::smooth)]);
+    of.template operator()<SlipEndKind::any>(items.first[int(SlipEndKind::any)]);
+  }
 }
 
 }  // namespace gridmorph::kernels

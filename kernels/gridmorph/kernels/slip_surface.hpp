@@ -24,6 +24,13 @@ enum class SlipKind {
   facets       ///< nodes stay on a discrete surface made smooth, moved along its normals
 };
 
+/// Which of them a surface may be.
+enum class SlipKinds {
+  simple,  ///< neither meridional nor of facets
+  smooth,  ///< none of facets
+  any
+};
+
 /// A frame of the meridional plane: (abscissa, ordinate) is (axial, radius) turned. Walls at constant axial position
 /// are functions of the abscissa when it is the radius (cosine 0, sine 1), walls that turn from axial to radial in a
 /// frame between the two. Nodes move along the ordinate to a wall across the axis (at constant radius and angle), and
@@ -217,11 +224,13 @@ struct SlipSurfaceView {
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, Vec3 const& u) const {
     return constrain(baseline, own_offset(baseline), u);
   }
+  /// Of, here and below: which kinds it may be of; code that knows more is much smaller.
+  template <SlipKinds Of = SlipKinds::any>
   KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
     // What does not move stays to the bit, also where the baseline is off the surface.
     if (u.x == 0 && u.y == 0 && u.z == 0) return u;
     double const tolerance = 1e-14 * size;
-    if (kind == SlipKind::facets) {
+    if (Of == SlipKinds::any && kind == SlipKind::facets) {
       Vec3 const p = baseline + u;
       FacetFoot const foot = facets.closest_point(p);
       Vec3 const change = (facets.slide(foot, p) - p) + own * foot.normal;
@@ -241,11 +250,11 @@ struct SlipSurfaceView {
     double const r = norm(moved);
     // On the axis no radial direction leads back: only a wall across the axis has something to say there.
     if (!(r > 0)) {
-      if (!lies_across()) return u;
+      if (Of == SlipKinds::simple || !lies_across()) return u;
       MeridionalFoot const f = foot(a + du, 0);
       return small(f.away - own, tolerance) ? u : u - ((f.away - own) * f.axial) * direction;
     }
-    if (kind == SlipKind::meridional) {
+    if (Of != SlipKinds::simple && kind == SlipKind::meridional) {
       MeridionalFoot const f = foot(a + du, r);
       double const too_far = f.away - own;
       return small(too_far, tolerance) ? u : u - too_far * (f.axial * direction + (f.radial / r) * moved);
@@ -257,8 +266,10 @@ struct SlipSurfaceView {
   /// How constrain(baseline, own, u) changes where u changes by `rate` per unit of time. Facets: the derivative of the
   /// foot, without the change of the normal along which `own` is kept; beyond a rim, the part of `rate` in its tangent
   /// plane.
+  template <SlipKinds Of = SlipKinds::any>
   KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
-    if (kind == SlipKind::facets) return facets.foot_rate(facets.closest_point(baseline + u), baseline + u, rate);
+    if (Of == SlipKinds::any && kind == SlipKind::facets)
+      return facets.foot_rate(facets.closest_point(baseline + u), baseline + u, rate);
     double const axial_rate = dot(rate, direction);
     if (kind != SlipKind::revolution && kind != SlipKind::meridional) return rate - axial_rate * direction;
     Vec3 const d = baseline - origin;
@@ -266,9 +277,10 @@ struct SlipSurfaceView {
     Vec3 const radial = d - a * direction;
     Vec3 const moved = radial + (u - du * direction), moved_rate = rate - axial_rate * direction;
     double const r = norm(moved);
-    if (!(r > 0)) return lies_across() ? moved_rate : rate;
+    if (!(r > 0)) return Of != SlipKinds::simple && lies_across() ? moved_rate : rate;
     double const r_rate = dot(moved, moved_rate) / r;
-    if (kind == SlipKind::meridional) return rate - meridional_rate(a + du, moved, axial_rate, moved_rate, r_rate, own);
+    if (Of != SlipKinds::simple && kind == SlipKind::meridional)
+      return rate - meridional_rate(a + du, moved, axial_rate, moved_rate, r_rate, own);
     ProfileSample const wall = profile.sample(a + du);
     double const excess = r - (wall.value + own), excess_rate = r_rate - wall.slope * axial_rate;
     return rate - ((excess_rate - excess * r_rate / r) / r) * moved - (excess / r) * moved_rate;
@@ -290,8 +302,9 @@ struct SlipSurfaceView {
   }
 
   /// How far a displaced node is from where the surface wants it, 0 there, and the gradient of that in `gradient`.
+  template <SlipKinds Of = SlipKinds::any>
   KOKKOS_INLINE_FUNCTION double excess(Vec3 const& baseline, double own, Vec3 const& u, Vec3& gradient) const {
-    if (kind == SlipKind::facets) {
+    if (Of == SlipKinds::any && kind == SlipKind::facets) {
       Vec3 const p = baseline + u;
       FacetFoot const foot = facets.closest_point(p);
       bool const off_edge = foot.place == FacetFoot::Place::crease && foot.distance > 1e-14 * size;
@@ -306,12 +319,12 @@ struct SlipSurfaceView {
     Vec3 const moved = (d - a * direction) + (u - du * direction);
     double const r = norm(moved);
     if (!(r > 0)) {
-      if (!lies_across()) return 0;
+      if (Of == SlipKinds::simple || !lies_across()) return 0;
       MeridionalFoot const f = foot(a + du, 0);
       gradient = f.axial * direction;
       return f.away - own;
     }
-    if (kind == SlipKind::meridional) {
+    if (Of != SlipKinds::simple && kind == SlipKind::meridional) {
       MeridionalFoot const f = foot(a + du, r);
       // Away is measured along the ordinate where the frame is not inclined, and falls along the abscissa by the slope.
       double const fall = frame.inclined() ? 0.0 : f.slope;
@@ -350,6 +363,24 @@ struct SlipSurfaceView {
   KOKKOS_INLINE_FUNCTION static bool small(double v, double tolerance) { return v <= tolerance && v >= -tolerance; }
   KOKKOS_INLINE_FUNCTION bool is_own(double offset) const {
     return small(offset, baseline_deviation * (1 + 1e-6) + 1e-14 * size);
+  }
+};
+
+/// A surface of these kinds, as one of any. Borrows it.
+template <SlipKinds Of>
+struct SlipSurfaceOf {
+  SlipSurfaceView const& surface;
+  double size;
+
+  KOKKOS_INLINE_FUNCTION explicit SlipSurfaceOf(SlipSurfaceView const& of) : surface(of), size(of.size) {}
+  KOKKOS_INLINE_FUNCTION Vec3 constrain(Vec3 const& baseline, double own, Vec3 const& u) const {
+    return surface.constrain<Of>(baseline, own, u);
+  }
+  KOKKOS_INLINE_FUNCTION Vec3 constrain_rate(Vec3 const& baseline, double own, Vec3 const& u, Vec3 const& rate) const {
+    return surface.constrain_rate<Of>(baseline, own, u, rate);
+  }
+  KOKKOS_INLINE_FUNCTION double excess(Vec3 const& baseline, double own, Vec3 const& u, Vec3& gradient) const {
+    return surface.excess<Of>(baseline, own, u, gradient);
   }
 };
 

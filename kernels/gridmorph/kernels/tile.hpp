@@ -8,6 +8,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <cstdint>
 #include <type_traits>
 
 namespace gridmorph::kernels {
@@ -41,6 +42,19 @@ struct TileList {
 };
 
 KOKKOS_INLINE_FUNCTION constexpr Index tiles(Index n, Index width) { return (n + width - 1) / width; }
+
+/// Nodes begin ... end - 1 of row q of an entry.
+struct RowOfNodes {
+  int q, begin, end;
+};
+/// Of an entry with rows of n_p nodes, cut into items of at most `Width` nodes; there are fewer than 2^32 of them,
+/// since GPUs divide numbers of 64 bits by some hundred instructions.
+template <int Width>
+KOKKOS_INLINE_FUNCTION RowOfNodes row_of_nodes(int n_p, Index item) {
+  std::uint32_t const number = std::uint32_t(item), per_row = std::uint32_t(tiles(n_p, Width)), q = number / per_row;
+  int const begin = int(number - q * per_row) * Width;
+  return {int(q), begin, begin + Width < n_p ? begin + Width : n_p};
+}
 
 /// The entry that holds an item, by bisection in the running totals `first` (one past the last included).
 template <class View>

@@ -176,7 +176,8 @@ struct SideFillBack {
     Chain const& chain = chains(side.chain);
     int const q = on.side - chain.first_side;
     Index const line = side.first + Index(chain.n_s) * on.w;
-    bool const beyond_edges = !chain.blends_along(0) && !chain.blends_along(1);
+    auto const known = KnownLine<MemorySpace>::of(sides, chain, q, side.n_w, on.w);
+    bool const beyond_edges = wants_beyond_edges(chain);
     for (int p = 0; p < chain.n_s; ++p) between.set(line + p, beyond_edges ? -c[line + p] : Vec3{});
     auto const add = [](Field<double> const& to, Index n, Vec3 const& v) { to.set(n, to[n] + v); };
     for (int m = 0; m < chain.n_blocks; ++m) {
@@ -200,7 +201,7 @@ struct SideFillBack {
     }
     for (int m = 0; m <= chain.n_blocks; ++m) {
       int const p = sides.junctions(chain.first_junction + m).position;
-      if (side_node_is_known(sides, chain, q, side.n_w, p, on.w)) continue;
+      if (known.is_known(p)) continue;
       add(between, line + p, c[line + p]);
       c.set(line + p, {});
     }
@@ -237,8 +238,8 @@ struct SideEdgesBack {
   }
 };
 
-/// Transpose of EdgeFill: of the known nodes of the four edges along s, in sides 0 and 1; their copies in sides 2 and 3
-/// end at zero.
+/// Transpose of SideResidual on edges: of the known nodes of the four edges along s, in sides 0 and 1; their copies in
+/// sides 2 and 3 end at zero.
 template <class MemorySpace>
 struct EdgeFillBack {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -269,9 +270,10 @@ struct EdgeFillBack {
       c.set(at + from, c[at + from] + first);
       if (!open) c.set(at + to, c[at + to] + last);
     };
+    auto const line = KnownLine<MemorySpace>::of(sides, chain, q, n_w, w);
     int known = 0;
     for (int p = 1; p < chain.n_s; ++p)
-      if (side_node_is_known(sides, chain, q, n_w, p, w)) {
+      if (line.is_known(p)) {
         if (p > known + 1) fill(known, p, false);
         known = p;
       }
@@ -279,8 +281,8 @@ struct EdgeFillBack {
   }
 };
 
-/// Transpose of SideResidual: c ends as gradients of the displacements of known nodes; what the residual takes off for
-/// the line goes to its ends. One item per side line; of the edges those in sides 0 and 1.
+/// Transpose of SideResidual at known nodes: c ends as gradients of the displacements of known nodes; what the residual
+/// takes off for the line goes to its ends. One item per side line; of the edges those in sides 0 and 1.
 template <class MemorySpace>
 struct SideResidualBack {
   Kokkos::View<Chain const*, MemorySpace> chains;
@@ -302,11 +304,11 @@ struct SideResidualBack {
     int const a = q < 2 ? (q == 0 ? 0 : chain.n_a - 1) : on.w, b = q < 2 ? on.w : (q == 2 ? 0 : chain.n_b - 1);
     Index const at = side.first + Index(chain.n_s) * on.w;
     Index const lower = chain.first_end_value + a + Index(chain.n_a) * b, upper = lower + chain.section_size();
+    auto const known = KnownLine<MemorySpace>::of(sides, chain, q, side.n_w, on.w);
     Vec3 first, last;
     TurnedGradient first_turned, last_turned;
     for (int p = 0; p < chain.n_s; ++p) {
-      bool const end = p == 0 || (p == chain.n_s - 1 && !chain.open_end);
-      if (end || !side_node_is_known(sides, chain, q, side.n_w, p, on.w)) {
+      if (known.is_end(p) || !known.is_known(p)) {
         c.set(at + p, {});
         continue;
       }

@@ -31,6 +31,8 @@
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/rotation.hpp>
 
+#include <type_traits>
+
 namespace gridmorph::kernels {
 
 struct TurnWeights {
@@ -147,11 +149,34 @@ KOKKOS_INLINE_FUNCTION V turned_between(TurnedEndsWithRates const& all, Chain co
   return sum;
 }
 
+/// Which chains a kernel is for. One that leaves out what its chains have not needs a fraction of the registers, and so
+/// a GPU runs several times as many of its items at once; the host has one kernel for all.
+enum class Turning {
+  none,    ///< none that turns
+  steady,  ///< no rates
+  rates,   ///< rates alone
+  any
+};
+/// Calls run(kernel for the chains that there are), a Turning in the type of its argument.
+template <bool on_host, class Run>
+void with_turning(bool turns, TurnedEndsWithRates const& ends, Run const& run) {
+  auto const as = [&]<Turning Turns>() { run(std::integral_constant<Turning, Turns>()); };
+  if constexpr (on_host) {
+    as.template operator()<Turning::any>();
+  } else {
+    if (!turns) return as.template operator()<Turning::none>();
+    ends.has_rates() ? as.template operator()<Turning::rates>() : as.template operator()<Turning::steady>();
+  }
+}
+
 /// What the ends of line (a, b) of a chain that turns add to a node at x; the rate of that where there are rates.
+template <Turning Turns = Turning::any>
 KOKKOS_INLINE_FUNCTION Vec3 turned_between(TurnedEndsWithRates const& all, Chain const& chain, Index a, Index b,
                                            double t, Vec3 const& x) {
   Index const lower = chain.first_end_value + a + chain.n_a * b, upper = lower + chain.section_size();
-  if (all.has_rates()) return turned_between<DualVec3>(all, chain, lower, upper, t, x).rate;
+  if constexpr (Turns != Turning::steady)
+    if (Turns == Turning::rates || all.has_rates())
+      return turned_between<DualVec3>(all, chain, lower, upper, t, x).rate;
   return turned_between<Vec3>(all, chain, lower, upper, t, x);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 namespace gridmorph::detail {
 namespace {
@@ -153,6 +154,26 @@ std::vector<kernels::NearFieldLine> shifted(std::vector<kernels::NearFieldLine> 
   return lines;
 }
 
+kernels::SlipEndKind kind_of(kernels::SlipEnd const& end, std::vector<SlipSurface> const& surfaces) {
+  auto kind = end.surface[1] < 0 ? kernels::SlipEndKind::simple : kernels::SlipEndKind::smooth;
+  for (std::int32_t const number : end.surface) {
+    if (number < 0) continue;
+    if (surfaces[number].kind == kernels::SlipKind::facets) return kernels::SlipEndKind::any;
+    if (surfaces[number].kind == kernels::SlipKind::meridional) kind = kernels::SlipEndKind::smooth;
+  }
+  return kind;
+}
+
+/// The values of a pass that none of its ends has; its values start with the first.
+std::vector<Index> at_rest(std::vector<kernels::SlipEnd> const& ends, Index first, Index n_values) {
+  std::vector<char> slides(std::size_t(n_values), 0);
+  for (kernels::SlipEnd const& end : ends) slides[std::size_t(end.value - first)] = 1;
+  std::vector<Index> out;
+  for (Index n = 0; n < n_values; ++n)
+    if (!slides[std::size_t(n)]) out.push_back(first + n);
+  return out;
+}
+
 /// What the terms of a box have.
 kernels::VolumeKind kind_of(kernels::VolumeBox const& box, JoinedTables const& joined) {
   auto kind = box.common < 0 ? kernels::VolumeKind::plain : kernels::VolumeKind::turned;
@@ -184,6 +205,40 @@ void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
     if (term.t >= 0) term.t += shift.parameter;
     of_box[part.box].push_back(term);
   }
+}
+
+/// The stages of a plan in their order, those together that follow one another and need not wait: none of them writes a
+/// slot of the skeleton that another one reads or writes. Cost: linear in the nodes of the skeleton.
+std::vector<std::vector<Stage const*>> launched_together(Plan const& plan) {
+  // The last launch that writes a slot, and that reads it.
+  std::vector<std::size_t> written(std::size_t(plan.n_slots), 0), read(std::size_t(plan.n_slots), 0);
+  auto const each_read = [](Stage const& stage, auto const& visit) {
+    for (auto const* const list : {&stage.ends, &stage.sides.gathers})
+      for (kernels::NodeCopy const& copy : *list)
+        for (Index q = 0; q < copy.n_q; ++q)
+          for (Index p = 0; p < copy.n_p; ++p)
+            visit(std::size_t(copy.source + p * copy.source_stride_p + q * copy.source_stride_q));
+  };
+  auto const each_written = [](Stage const& stage, auto const& visit) {
+    for (kernels::SkeletonSweep const& sweep : stage.sweeps)
+      for (std::int32_t q = 0; q < sweep.n_q; ++q)
+        for (std::int32_t p = 0; p < sweep.n_p; ++p) visit(std::size_t(sweep.slot + p + q * sweep.slot_q));
+  };
+  std::vector<std::vector<Stage const*>> launches;
+  for (Stage const& stage : plan.stages) {
+    std::size_t const last = launches.size();
+    // Where rotations come to ends they come to all ends of a launch.
+    bool waits = launches.empty() || stage.turns || launches.back().front()->turns;
+    if (!waits) {
+      each_read(stage, [&](std::size_t slot) { waits = waits || written[slot] == last; });
+      each_written(stage, [&](std::size_t slot) { waits = waits || written[slot] == last || read[slot] == last; });
+    }
+    if (waits) launches.emplace_back();
+    launches.back().push_back(&stage);
+    each_read(stage, [&](std::size_t slot) { read[slot] = launches.size(); });
+    each_written(stage, [&](std::size_t slot) { written[slot] = launches.size(); });
+  }
+  return launches;
 }
 
 /// Vectors of the host, component by component.
@@ -262,31 +317,54 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   auto sweeps = [&](std::vector<kernels::SkeletonSweep> const& list) {
     return WorkList<kernels::SkeletonSweep, Memory>(exec, list, Sweep::items, "sweeps");
   };
-  for (Stage const& stage : plan.stages) {
-    Shift const shift(joined);
+  for (Stage const& stage : plan.stages) n_end_values += stage.lines.n_end_values;
+  for (SpreadPass const& pass : plan.spreads) n_end_values += pass.lines.n_end_values;
+  for (std::vector<Stage const*> const& together : launched_together(plan)) {
     DeviceStage<Exec> device;
-    device.region = "gridmorph::stage " + stage.name;
-    device.ends = copies(shifted(stage.ends, shift.end_value), "ends");
-    device.gathers = copies(shifted(stage.sides.gathers, shift.side_node), "gathers");
-    device.sweeps = sweeps(shifted(stage.sweeps, shift));
-    std::vector<kernels::SideLine> side_lines = stage.sides.lines;
-    for (kernels::SideLine& line : side_lines) line.side += shift.side;
+    device.region = "gridmorph::stage";
+    device.first_end_value = joined.lines.n_end_values;
+    std::vector<kernels::NodeCopy> ends, gathers;
+    std::vector<kernels::SkeletonSweep> written;
+    std::vector<kernels::SideNodes> side_nodes;
+    std::vector<kernels::SideLine> side_lines;
+    std::vector<std::int32_t> corrected, run_across;
+    std::vector<kernels::NearFieldLine> near_field;
+    for (Stage const* const stage : together) {
+      Shift const shift(joined);
+      device.region += (stage == together.front() ? " " : ", ") + stage->name;
+      append(ends, shifted(stage->ends, shift.end_value));
+      append(gathers, shifted(stage->sides.gathers, n_end_values + shift.side_node));
+      append(written, shifted(stage->sweeps, shift));
+      for (kernels::Side const& side : stage->sides.sides)
+        side_nodes.push_back({shift.side + std::int32_t(&side - stage->sides.sides.data()),
+                              stage->lines.chains[side.chain].n_s, side.n_w});
+      for (kernels::SideLine const& line : stage->sides.lines) side_lines.push_back({line.side + shift.side, line.w});
+      for (std::int32_t const chain : stage->sides.corrected) corrected.push_back(chain + shift.chain);
+      append(near_field, shifted(stage->near_field, shift));
+      device.turns = stage->turns;
+      collect_parts(stage->volume, shift, of_box);
+      join_lines(stage->lines, shift, joined.lines);
+      join_sides(stage->sides, shift, joined.sides);
+      append(run_across, sides_run_across(*stage, shift));
+    }
+    device.n_end_values = joined.lines.n_end_values - device.first_end_value;
+    std::size_t const n_ends = ends.size();
+    for (kernels::NodeCopy const& copy : ends) device.ends.n_items += Copy::items(copy);
+    append(ends, gathers);
+    device.copies = copies(ends, "chain_ends");
+    device.ends.entries = Kokkos::subview(device.copies.entries, std::pair<std::size_t, std::size_t>{0, n_ends});
+    device.ends.first_item = device.copies.first_item;
+    device.gathers = Kokkos::subview(device.copies.entries, std::pair<std::size_t, std::size_t>{n_ends, ends.size()});
+    device.sweeps = sweeps(written);
+    device.side_nodes = WorkList<kernels::SideNodes, Memory>(exec, side_nodes, SideResidual::items, "side_nodes");
     device.side_lines = table(exec, side_lines, "side_lines");
-    std::vector<std::int32_t> corrected = stage.sides.corrected;
-    for (std::int32_t& chain : corrected) chain += shift.chain;
     device.corrected = table(exec, corrected, "corrected");
-    device.turns = stage.turns;
-    device.near_field = table(exec, shifted(stage.near_field, shift), "near_field_lines");
-    device.first_end_value = shift.end_value;
-    device.n_end_values = stage.lines.n_end_values;
-    collect_parts(stage.volume, shift, of_box);
-    join_lines(stage.lines, shift, joined.lines);
-    join_sides(stage.sides, shift, joined.sides);
+    device.near_field = table(exec, near_field, "near_field_lines");
     std::vector<kernels::SideLine> across;
-    if constexpr (Shape::host) across = add_copies_across(sides_run_across(stage, shift), joined);
+    if constexpr (Shape::host) across = add_copies_across(run_across, joined);
     device.across = table(exec, across, "sides_across");
     stages.push_back(std::move(device));
-    // The host lists of this stage end here, and uploads may still read them.
+    // The host lists of these stages end here, and uploads may still read them.
     compat::fence(exec, "gridmorph::Morpher (host tables of a stage may go)");
   }
   std::vector<std::int32_t> n_swept;
@@ -297,6 +375,15 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     DeviceSpread<Exec> device;
     std::vector<kernels::SlipEnd> slip_ends = pass.ends;
     for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
+    auto const kind = [&](kernels::SlipEnd const& end) { return kind_of(end, plan.surfaces); };
+    if constexpr (!Shape::host)
+      std::stable_sort(slip_ends.begin(), slip_ends.end(),
+                       [&](auto const& a, auto const& b) { return kind(a) < kind(b); });
+    std::vector<Index> const rest = at_rest(slip_ends, shift.end_value, pass.lines.n_end_values);
+    device.at_rest = table(exec, rest, "slip_ends::at_rest");
+    for (Index& first : device.items.first) first = Index(rest.size());
+    for (kernels::SlipEnd const& end : slip_ends)
+      for (int after = int(kind(end)) + 1; after <= kernels::n_slip_end_kinds; ++after) ++device.items.first[after];
     device.ends = table(exec, slip_ends, "slip_ends");
     device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
@@ -339,7 +426,7 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
   terms = table(exec, joined.terms, "terms");
   law_knots = table(exec, plan.law_knots, "law_knots");
   skeleton = Workspace<Memory>(exec, plan.n_slots, fields, "skeleton");
-  ends = Workspace<Memory>(exec, joined.lines.n_end_values, fields, "end_values");
+  ends = Workspace<Memory>(exec, n_end_values + Index(joined.sides.t.size()), fields, "end_values");
   residuals = Workspace<Memory>(exec, Index(joined.sides.t.size()), fields, "side_residuals");
   sides.c = residuals.read()[0];
   if (!plan.turns.roots.empty()) turns = device_turns(exec, plan, joined, surfaces, rotations, fields);

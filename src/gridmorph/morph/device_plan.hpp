@@ -66,8 +66,13 @@ template <class Exec>
 struct DeviceStage {
   using Memory = typename Exec::memory_space;
   std::string region;  ///< name in profiles
-  WorkList<kernels::NodeCopy, Memory> ends, gathers;
+  /// To what the stage reads: ends of its chains, then known nodes of its sides, which have their places behind all
+  /// ends.
+  WorkList<kernels::NodeCopy, Memory> copies;
+  kernels::TileList<kernels::NodeCopy, Memory> ends;       ///< of `copies`
+  Kokkos::View<kernels::NodeCopy const*, Memory> gathers;  ///< of `copies`
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
+  WorkList<kernels::SideNodes, Memory> side_nodes;
   Kokkos::View<kernels::SideLine*, Memory> side_lines;
   Kokkos::View<std::int32_t*, Memory> corrected;
   Kokkos::View<kernels::SideLine*, Memory> across;           ///< pieces of sides that rows run across
@@ -79,8 +84,10 @@ struct DeviceStage {
 template <class Exec>
 struct DeviceSpread {
   using Memory = typename Exec::memory_space;
-  Kokkos::View<kernels::SlipEnd*, Memory> ends;
+  Kokkos::View<kernels::SlipEnd*, Memory> ends;               ///< off the host kind after kind
   Kokkos::View<kernels::SlipEndBaseline*, Memory> baselines;  ///< per end
+  Kokkos::View<Index*, Memory> at_rest;                       ///< values of ends that slide on nothing
+  kernels::SlipEndsByKind items;
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Index first_value = 0, n_values = 0;
 };
@@ -133,6 +140,7 @@ struct DevicePlan {
   using Memory = typename Exec::memory_space;
   using Shape = kernels::TileShape<Exec>;
   using Copy = kernels::CopyNodes<Memory, Shape::row>;
+  using SideResidual = kernels::SideResidual<Memory, Shape::row>;
   using Sweep = kernels::SweepSkeleton<Memory, Shape::row, false>;
   using Volume = kernels::VolumePass<Memory, Shape>;
   using Parameters = kernels::LineParameters<Memory, Shape::lines>;
@@ -150,11 +158,19 @@ struct DevicePlan {
   Kokkos::View<kernels::VolumeTerm*, Memory> terms;
   Kokkos::View<double*, Memory> t;          ///< line parameters
   Kokkos::View<double*, Memory> law_knots;  ///< of laws that are tables
-  Workspace<Memory> skeleton, ends, residuals;
+  Workspace<Memory> skeleton, residuals;
+  Workspace<Memory> ends;  ///< of lines, then displacements of known nodes of sides, side by side in one list of copies
+  Index n_end_values = 0;
   DeviceTurns<Exec> turns;
   int fields = 1;
   std::shared_ptr<TransposedPlan<Exec> const> transposed;   ///< where gradients are asked for
   std::shared_ptr<stages::BlockCommon<Exec> const> common;  ///< where parts have motions in common
+
+  /// Displacements of known nodes of sides, as side arrays have them, in what `ends` has of a field.
+  [[nodiscard]] kernels::Field<double> known_sides(kernels::Field<double> const& ends_of_field) const {
+    auto const& [x, y, z, stride] = ends_of_field;
+    return {x + n_end_values, y + n_end_values, z + n_end_values, stride};
+  }
 
   DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<double const> x, int n_fields);
 };

@@ -201,7 +201,9 @@ TransposedPlan<Exec>::TransposedPlan(Exec const& exec, DevicePlan<Exec> const& p
         groups_of(host.bundles(on_host(stage.sweeps.entries), stage.first_end_value, stage.n_end_values));
     t.lines = lines_of(exec, groups);
     t.ends = copies_of(exec, on_host(stage.ends.entries));
-    t.gathers = copies_of(exec, on_host(stage.gathers.entries));
+    auto gathers = on_host(stage.gathers);
+    for (kernels::NodeCopy& copy : gathers) copy.destination -= plan.n_end_values;  // gradients are where residuals are
+    t.gathers = copies_of(exec, gathers);
     room_for_edges = std::max(room_for_edges, add_slabs(exec, host, groups.groups, on_host(stage.corrected), t));
     Dependencies of_root;
     auto const lines = on_host(stage.near_field);

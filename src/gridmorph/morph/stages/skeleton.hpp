@@ -26,7 +26,7 @@ class OnSkeleton {
   explicit OnSkeleton(BlockTables<Exec> tables) : tables_(std::move(tables)) {}
 
   [[nodiscard]] detail::DevicePlan<Exec> const& plan() const { return *tables_; }
-  void copy(char const* label, Exec const& exec, detail::WorkList<kernels::NodeCopy, Memory> const& list,
+  void copy(char const* label, Exec const& exec, kernels::TileList<kernels::NodeCopy, Memory> const& list,
             kernels::Field<double> const& from, kernels::Field<double> const& to) const {
     kernels::copy_nodes(exec, label, list, plan().rotations, read(from), to);
   }
@@ -35,12 +35,13 @@ class OnSkeleton {
     table.c = read(f.residuals);
     return table;
   }
+  /// with_turns, with_sides: what its chains have.
   template <bool Add>
-  void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, Memory> const& list,
-             StageField<Exec> const& f) const {
+  void sweep(Exec const& exec, detail::WorkList<kernels::SkeletonSweep, Memory> const& list, StageField<Exec> const& f,
+             bool with_turns, bool with_sides) const {
     kernels::sweep_skeleton<Add>(exec, list, plan().lines.chains, plan().rotations, sides(f), plan().t.data(),
                                  read(f.ends), f.skeleton, plan().law_knots.data(),
-                                 plan().turns.of_skeleton(f.number, f.of));
+                                 plan().turns.of_skeleton(f.number, f.of), with_turns, with_sides);
   }
 
   /// Where the transposes of sweeps and of the volume read gradients: of displacements before what is in common is
@@ -243,15 +244,12 @@ class LineSweep : OnSkeleton<Exec> {
   template <bool Rate>
   void run(Exec const& exec, StageField<Exec> const& f) const {
     auto const& stage = this->plan().stages[number_];
-    this->copy("gridmorph::chain_ends", exec, stage.ends, f.skeleton, f.ends);
+    this->copy("gridmorph::chain_ends", exec, stage.copies, f.skeleton, f.ends);
     detail::BlockTurns<Exec, Rate>(this->plan(), f.number, f.of).of_ends(exec, stage);
-    if (stage.side_lines.extent(0) > 0) {
-      this->copy("gridmorph::side_residual::known", exec, stage.gathers, f.skeleton, f.residuals);
-      kernels::fill_sides(exec, this->plan().lines.chains, this->sides(f), stage.side_lines, stage.corrected,
-                          stage.across, read(f.ends), f.residuals, this->plan().law_knots.data(),
-                          this->plan().turns.of_skeleton(f.number, f.of));
-    }
-    this->template sweep<false>(exec, stage.sweeps, f);
+    kernels::fill_sides(exec, stage.side_nodes, this->plan().lines.chains, this->sides(f), stage.across, read(f.ends),
+                        this->plan().known_sides(f.ends), f.residuals, this->plan().law_knots.data(),
+                        this->plan().turns.of_skeleton(f.number, f.of), stage.turns);
+    this->template sweep<false>(exec, stage.sweeps, f, stage.turns, stage.side_nodes.n_items > 0);
   }
 
   std::size_t number_;
@@ -309,13 +307,13 @@ class SlipSpread : OnSkeleton<Exec> {
 
   void enqueue(Exec const& exec, Baseline const&, StageField<Exec> const& f) const {
     project<false>(exec, f, f);
-    this->template sweep<true>(exec, pass().sweeps, f);
+    this->template sweep<true>(exec, pass().sweeps, f, false, false);
   }
 
   void rate(Exec const& exec, Baseline const& x, StageField<Exec> const& f, StageField<Exec> const& r) const {
     project<true>(exec, f, r);
     enqueue(exec, x, f);
-    this->template sweep<true>(exec, pass().sweeps, r);
+    this->template sweep<true>(exec, pass().sweeps, r, false, false);
   }
 
   [[nodiscard]] static bool bends() { return true; }
@@ -335,7 +333,8 @@ class SlipSpread : OnSkeleton<Exec> {
                                                        this->plan().rotations,
                                                        read(f.skeleton),
                                                        read(f.skeleton),
-                                                       g.ends};
+                                                       g.ends,
+                                                       {}};
     kernels::pull_back("gridmorph::transposed::slip_ends", exec, back().ends_of_slot,
                        kernels::SlipEndBySlot<Memory>{values, back().kept.read()[0], read(g.ends)}, g.skeleton);
   }
@@ -348,10 +347,10 @@ class SlipSpread : OnSkeleton<Exec> {
   /// End values of `to`, where the displacement is that of `at`; with `Rate`, their derivative.
   template <bool Rate>
   void project(Exec const& exec, StageField<Exec> const& at, StageField<Exec> const& to) const {
-    kernels::slip_ends(exec, pass().first_value, pass().n_values,
+    kernels::slip_ends(exec, pass().items,
                        kernels::SlipEndValues<typename Exec::memory_space, Rate>{
                            pass().ends, pass().baselines, this->plan().surfaces.surfaces, this->plan().rotations,
-                           read(at.skeleton), read(to.skeleton), to.ends});
+                           read(at.skeleton), read(to.skeleton), to.ends, pass().at_rest});
   }
 
   std::size_t number_;
