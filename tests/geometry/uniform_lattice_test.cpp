@@ -1,7 +1,7 @@
 // Interpolation in a lattice of equal cells against functions that are linear in each coordinate.
 #include "support/random.hpp"
 
-#include <gridmorph/kernels/uniform_lattice.hpp>
+#include <gridmorph/kernels/lattice_field.hpp>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 namespace gridmorph::test {
 namespace {
 
+using kernels::LatticeReader;
 using kernels::UniformLattice;
 
 /// Lattices in space, in each plane and along each axis; odd sizes.
@@ -46,9 +47,10 @@ TEST(UniformLattice, ReproducesTrilinearFieldsAndTakesTheNearestPointOutside) {
   Random random(1);
   for (UniformLattice const& lattice : lattices()) {
     auto const value = on_nodes(lattice, trilinear);
+    LatticeReader<Vec3> const read(lattice);
     for (int trial = 0; trial < 200; ++trial) {
       Vec3 const x = lattice.low + Vec3{0.6, 0.2, 1} + random.vector(2);
-      EXPECT_LT(distance(lattice.at(value.data(), x), trilinear(into_box(lattice, x))), 2e-14);
+      EXPECT_LT(distance(read.at(value.data(), x), trilinear(into_box(lattice, x))), 2e-14);
     }
   }
 }
@@ -58,12 +60,38 @@ TEST(UniformLattice, HasItsValuesOnItsNodesAndConstantsBitForBit) {
   for (UniformLattice const& lattice : lattices()) {
     auto const value = on_nodes(lattice, trilinear);
     auto const constant = on_nodes(lattice, [](Vec3 const&) { return Vec3{0.1, -1. / 3, 7e5}; });
+    LatticeReader<Vec3> const read(lattice);
     for (std::int64_t n = 0; n < lattice.size(); ++n) {
-      EXPECT_LT(distance(lattice.at(value.data(), lattice.position(n)), value[n]), 2e-14);
-      EXPECT_EQ(lattice.at(constant.data(), lattice.position(n) + random.vector(1)), constant.front());
+      EXPECT_LT(distance(read.at(value.data(), lattice.position(n)), value[n]), 2e-14);
+      EXPECT_EQ(read.at(constant.data(), lattice.position(n) + random.vector(1)), constant.front());
     }
   }
 }
+
+#ifdef GRIDMORPH_WIDE_VECTORS
+TEST(UniformLattice, HasThePlacesAndValuesOfVec3BitForBitByVectorsOfOneRegister) {
+  Random random(3);
+  for (UniformLattice const& lattice : lattices()) {
+    std::vector<kernels::PackedVec3> value;
+    for (Vec3 const& v : on_nodes(lattice, trilinear)) value.push_back({v.x, v.y, v.z});
+    LatticeReader<Vec3> const read(lattice);
+    LatticeReader<kernels::WideVec3> const read_wide(lattice);
+    auto const at_all = [&](Vec3 const& x) {
+      auto const expected = read.place(x);
+      auto const place = read_wide.place(kernels::as<kernels::WideVec3>(x));
+      Vec3 cell, t, v;
+      kernels::put(cell, place.cell);
+      kernels::put(t, place.t);
+      kernels::put(v, read_wide.at(value.data(), kernels::as<kernels::WideVec3>(x)));
+      EXPECT_EQ(cell, expected.cell);
+      EXPECT_EQ(t, expected.t);
+      EXPECT_EQ(v, read.at(value.data(), x));
+    };
+    for (int trial = 0; trial < 200; ++trial) at_all(lattice.low + Vec3{0.6, 0.2, 1} + random.vector(2));
+    for (std::int64_t n = 0; n < lattice.size(); ++n) at_all(lattice.position(n));
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace gridmorph::test

@@ -40,14 +40,17 @@ struct Sources {
       area.push_back(1 + 0.1 * std::sin(p.x + 2 * p.y + 3 * p.z));
     }
   }
-  [[nodiscard]] InverseDistanceField planned(int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes) const {
+  [[nodiscard]] InverseDistanceField planned(int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes,
+                                             std::vector<Index32> const& readers = {}) const {
     Coordinates x(Index(point.size()));
     std::vector<Index32> nodes;
     for (std::size_t k = 0; k < point.size(); ++k) {
       x.set(Index(k), point[k]);
       nodes.push_back(Index32(k));
     }
-    return make_scatter_lattice(x, nodes, area, dimension, low, high, most_nodes);
+    ScatterLattice lattice{low, high, most_nodes};
+    lattice.readers = readers;
+    return make_scatter_lattice(x, nodes, area, dimension, lattice);
   }
 };
 
@@ -58,7 +61,9 @@ std::vector<Vec3> on_lattice(InverseDistanceField const& planned, std::vector<Va
   stages::SmoothField<Exec, Value> const smooth(exec, planned, "gridmorph::test::smooth");
   smooth.enqueue(exec, values.data());
   exec.fence();
-  return {smooth.values().data(), smooth.values().data() + smooth.values().extent(0)};
+  std::vector<Vec3> out;
+  for (std::size_t n = 0; n < smooth.values().extent(0); ++n) out.push_back(kernels::as<Vec3>(smooth.values()(n)));
+  return out;
 }
 
 using Function = Vec3 (*)(Vec3 const&);
@@ -172,6 +177,36 @@ TEST(InverseDistanceField, TheLatticeCoversItsBoxWithAtMostTheNodesAllowed) {
         EXPECT_LT(b, lattice.spacing);
       }
     }
+}
+
+TEST(InverseDistanceField, HasRowsWhereNodesReadItAndTheSameValuesThere) {
+  Sources const sources(cube_surface(8));
+  // Two nodes of the mesh: one at a corner of its cell, one amid a face of its own.
+  std::vector<Index32> const readers{0, 40};
+  for (int const dimension : {2, 3}) {
+    Vec3 const low{-4, -4, dimension == 2 ? 0. : -4}, high{12, 12, dimension == 2 ? 0. : 12};
+    auto const all = sources.planned(dimension, low, high, 4000);
+    auto const few = sources.planned(dimension, low, high, 4000, readers);
+    ASSERT_EQ(all.lattice.size(), all.shape.size());
+    EXPECT_EQ(few.shape.size(), all.shape.size());
+    EXPECT_LT(few.lattice.size(), 40);
+    auto const values = values_at(sources.point, [](Vec3 const& x) { return Vec3{x.x, x.y * x.z, std::sin(x.y)}; });
+    auto const everywhere = on_lattice(all, values), there = on_lattice(few, values);
+    for (Index32 const n : few.lattice.target) EXPECT_EQ(there[n], everywhere[n]);
+    std::vector<kernels::PackedVec3> packed_all(everywhere.size()), packed_few(there.size());
+    for (std::size_t n = 0; n < there.size(); ++n) {
+      kernels::put(packed_all[n], everywhere[n]);
+      kernels::put(packed_few[n], there[n]);
+    }
+    kernels::LatticeReader<Vec3> const lattice(all.shape);
+    for (Index32 const n : readers) {
+      Vec3 const x = sources.point[n], value = lattice.at(packed_all.data(), x);
+      EXPECT_EQ(lattice.at(packed_few.data(), x), value);
+      // Whoever has the mesh in single precision reads about the same.
+      for (double const off : {-1e-7, 1e-7})
+        EXPECT_LT(distance(lattice.at(packed_few.data(), x + off * Vec3{1, 1, 1}), value), 1e-5);
+    }
+  }
 }
 
 TEST(InverseDistanceField, ConstantsStayConstant) {

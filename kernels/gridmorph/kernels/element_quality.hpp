@@ -29,6 +29,7 @@
 #include <gridmorph/kernels/element_shape.hpp>
 #include <gridmorph/kernels/field.hpp>
 #include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/packed_vec3.hpp>
 
 namespace gridmorph::kernels {
 
@@ -36,26 +37,19 @@ struct ElementCorners {
   Vec3 at[max_corners];
 };
 
-/// A point in half a cache line: elements read their corners from all over the mesh, so x, y and z should come at once.
-struct alignas(32) PackedPoint {
-  double x, y, z;
-};
-
+/// Elements read their corners from all over the mesh, so x, y and z should come at once.
 template <class MemorySpace>
 struct PackPoints {
   Field<double const> x;
-  Kokkos::View<PackedPoint*, MemorySpace> points;
+  Kokkos::View<PackedVec3*, MemorySpace> points;
 
   [[nodiscard]] Index size() const { return Index(points.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index n) const {
-    Vec3 const p = x[n];
-    points(n) = {p.x, p.y, p.z};
-  }
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { put(points(n), x[n]); }
 };
 
 template <class Exec>
 void pack_points(Exec const& exec, Field<double const> const& x,
-                 Kokkos::View<PackedPoint*, typename Exec::memory_space> const& points) {
+                 Kokkos::View<PackedVec3*, typename Exec::memory_space> const& points) {
   launch("gridmorph::quality::pack", exec, PackPoints<typename Exec::memory_space>{x, points});
 }
 

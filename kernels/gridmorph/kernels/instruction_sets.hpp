@@ -2,8 +2,9 @@
 // found out when a program starts. Contraction of products and sums is switched off in both, so that they give the same
 // bits.
 //
-// Only kernels that gain ask for it, each by a member `two_instruction_sets`: rows that are computed in long loops.
-// Those that wait for memory do not. AVX-512 gives at most a tenth more, which is not worth a third copy.
+// Only kernels that gain ask for it, each by a member `two_instruction_sets`: rows that are computed in long loops; or
+// by computing runs of vectors (vector_runs.hpp). Those that wait for memory do not. AVX-512 gives at most a tenth
+// more, which is not worth a third copy.
 #pragma once
 
 #include <gridmorph/kernels/grid_line.hpp>

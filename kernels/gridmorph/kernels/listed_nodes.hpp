@@ -60,18 +60,6 @@ struct TakePrescribed {
   }
 };
 
-/// u(n) += share add(n).
-template <class MemorySpace>
-struct AddShare {
-  Kokkos::View<std::int32_t const*, MemorySpace> node;
-  Kokkos::View<float const*, MemorySpace> share;
-  Vec3 const* add;
-  Vec3* u;
-
-  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { u[node(k)] += double(share(k)) * add[node(k)]; }
-};
-
 /// u(to) = u(from).
 template <class MemorySpace>
 struct CopyListed {

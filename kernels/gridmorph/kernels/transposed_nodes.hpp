@@ -97,16 +97,6 @@ struct ReadWithShare {
   Vec3* read;
   KOKKOS_INLINE_FUNCTION void operator()(Index n) const { read[n] = double(share(n)) * u[n]; }
 };
-/// Transpose of AddShare: add(n) = share u(n).
-template <class MemorySpace>
-struct ShareOf {
-  Kokkos::View<std::int32_t const*, MemorySpace> node;
-  Kokkos::View<float const*, MemorySpace> share;
-  Vec3 const* u;
-  Vec3* add;
-  [[nodiscard]] Index size() const { return Index(node.extent(0)); }
-  KOKKOS_INLINE_FUNCTION void operator()(Index k) const { add[node(k)] = double(share(k)) * u[node(k)]; }
-};
 /// Transpose of FieldAndMissing: to what the nodes read and miss; u ends at zero.
 template <class MemorySpace>
 struct FieldAndMissingBack {

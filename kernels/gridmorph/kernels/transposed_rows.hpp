@@ -146,13 +146,14 @@ struct LatticeParts {
   Vec3* parts;
   KOKKOS_INLINE_FUNCTION void operator()(Index c) const {
     Corners sum[3];
+    LatticeReader<Vec3> const lattice(readers.shape);
     Index const begin = readers.first(c), end = readers.first(c + 1);
     for (Index k = begin; k < end; ++k) {
       Index const n = readers.node(k);
       Vec3 const g = gradient[n];
-      PlaceInCell const at = readers.shape.place(x[n]);
+      Vec3 const t = lattice.place(x[n]).t;
       for (int m = 0; m < n_lanes; ++m) {
-        T const weight = share<0>(at.t[0], m) * share<1>(at.t[1], m) * share<2>(at.t[2], m);
+        T const weight = share<0>(t.x, m) * share<1>(t.y, m) * share<2>(t.z, m);
         sum[0].of[m] += weight * g.x;
         sum[1].of[m] += weight * g.y;
         sum[2].of[m] += weight * g.z;
@@ -171,7 +172,7 @@ struct LatticeParts {
   struct Corners {
     T of[n_lanes] = {};
   };
-  /// What PlaceInCell::weight() takes of t along an axis, for the corners from m width on.
+  /// The share along an axis of the corners from m width on: t of those whose bit `axis` is set, 1 - t of the others.
   template <int axis>
   KOKKOS_FORCEINLINE_FUNCTION static T share(double t, int m) {
     double upper[width];

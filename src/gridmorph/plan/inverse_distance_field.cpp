@@ -1,15 +1,19 @@
+#include <gridmorph/kernels/lattice_field.hpp>
 #include <gridmorph/plan/boundary_groups.hpp>
 #include <gridmorph/plan/inverse_distance_field.hpp>
 #include <gridmorph/plan/make_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 
 namespace gridmorph {
 
 namespace {
 
-kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dimension, Index most_nodes) {
+kernels::UniformLattice lattice_over(ScatterLattice const& asked, int dimension) {
+  Vec3 const &low = asked.low, &high = asked.high;
   kernels::UniformLattice lattice;
   lattice.low = low;
   double const size[3] = {high.x - low.x, high.y - low.y, dimension == 2 ? 0 : high.z - low.z};
@@ -17,7 +21,7 @@ kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dime
   auto const fits = [&](double h) {
     double n = 1;
     for (double const s : size) n *= s > 0 ? std::ceil(s / h) + 1 : 1;
-    return n <= double(most_nodes);
+    return n <= double(asked.most_nodes);
   };
   while (fits(spacing / 1.1)) spacing /= 1.1;
   lattice.spacing = spacing;
@@ -25,15 +29,39 @@ kernels::UniformLattice lattice_over(Vec3 const& low, Vec3 const& high, int dime
   return lattice;
 }
 
+/// The nodes of a lattice that nodes of a mesh read, ascending. Those a little off count too: who morphs may have the
+/// mesh in single precision.
+std::vector<Index> nodes_read(kernels::UniformLattice const& lattice, Coordinates const& x,
+                              std::vector<Index32> const& readers) {
+  constexpr double margin = 1e-3;  // of a cell
+  kernels::LatticeReader<Vec3> const at(lattice);
+  std::vector<std::uint8_t> is_read(lattice.size(), 0);
+  for (Index32 const n : readers) {
+    auto const place = at.place(x[n]);
+    double const cell[3] = {place.cell.x, place.cell.y, place.cell.z}, t[3] = {place.t.x, place.t.y, place.t.z};
+    Index from[3], to[3];
+    for (int a = 0; a < 3; ++a) {
+      from[a] = std::max<Index>(0, Index(cell[a]) - (t[a] < margin ? 1 : 0));
+      to[a] = std::min<Index>(lattice.nodes[a] - 1, Index(cell[a]) + (t[a] > 1 - margin ? 2 : 1));
+    }
+    for (Index k = from[2]; k <= to[2]; ++k)
+      for (Index j = from[1]; j <= to[1]; ++j)
+        for (Index i = from[0]; i <= to[0]; ++i) is_read[i + lattice.nodes[0] * (j + lattice.nodes[1] * k)] = 1;
+  }
+  std::vector<Index> out;
+  for (Index n = 0; n < lattice.size(); ++n)
+    if (readers.empty() || is_read[n] != 0) out.push_back(n);
+  return out;
+}
+
 }  // namespace
 
 InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
                                           std::vector<Index32> const& nodes, std::vector<double> const& area,
-                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes,
-                                          double opening) {
+                                          int dimension, ScatterLattice const& lattice) {
   InverseDistanceField out;
   if (nodes.empty()) return out;
-  out.shape = lattice_over(low, high, dimension, most_nodes);
+  out.shape = lattice_over(lattice, dimension);
   // What cells of the lattice show. Where nodes of walls are further apart, the nearest of them decide about a cell,
   // and means of four would depend on which are grouped.
   BoundaryGroups const tree(coordinates, nodes, area, 0.2513 * out.shape.spacing);
@@ -46,8 +74,10 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
     std::vector<Index32> open, items;
     std::vector<double> weights;
   };
-  out.lattice = make_rows(host, "gridmorph::make_scatter_lattice", out.shape.size(),
-                          [&, room = Room()](Index n, InterpolationOperator& rows) mutable {
+  std::vector<Index> const read = nodes_read(out.shape, coordinates, lattice.readers);
+  out.lattice = make_rows(host, "gridmorph::make_scatter_lattice", std::ssize(read),
+                          [&, room = Room()](Index k, InterpolationOperator& rows) mutable {
+                            Index const n = read[k];
                             Vec3 const x = out.shape.position(n);
                             room.items.clear();
                             room.weights.clear();
@@ -57,7 +87,7 @@ InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates 
                               room.open.pop_back();
                               auto const& group = tree.groups[g];
                               double const d = std::max(distance(x, group.centre), nearest);
-                              if (group.part[0] >= 0 && group.radius > opening * d) {
+                              if (group.part[0] >= 0 && group.radius > lattice.opening * d) {
                                 room.open.push_back(group.part[1]);
                                 room.open.push_back(group.part[0]);
                                 continue;

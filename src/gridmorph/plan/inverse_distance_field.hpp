@@ -36,17 +36,25 @@ struct InverseDistanceField {
 /// as many items per lattice node.
 inline constexpr double coarse_opening = 0.4917, fine_opening = 0.3517;
 
-/// The field of boundary nodes on a lattice over the box from low to high. nodes: boundary nodes; area: the share of
-/// each, positive. At most `most_nodes` lattice nodes. Cost O(n log n) in the nodes and in the lattice's nodes; the
-/// latter on all threads of the instance, whose number does not matter.
+/// What lattice a field is asked for on.
+struct ScatterLattice {
+  Vec3 low, high;  ///< the box that it covers
+  Index most_nodes = 100'000;
+  double opening = coarse_opening;
+  /// The nodes of the mesh that read the field: nodes of the lattice that none of them reads have no row. Empty: all
+  /// have.
+  std::vector<Index32> readers{};
+};
+
+/// The field of boundary nodes on a lattice. nodes: boundary nodes; area: the share of each, positive. Cost O(n log n)
+/// in the nodes and in the lattice's nodes; the latter on all threads of the instance, whose number does not matter.
 InverseDistanceField make_scatter_lattice(HostInstance const& host, Coordinates const& coordinates,
                                           std::vector<Index32> const& nodes, std::vector<double> const& area,
-                                          int dimension, Vec3 const& low, Vec3 const& high, Index most_nodes = 100'000,
-                                          double opening = coarse_opening);
+                                          int dimension, ScatterLattice const& lattice);
 inline InverseDistanceField make_scatter_lattice(Coordinates const& coordinates, std::vector<Index32> const& nodes,
-                                                 std::vector<double> const& area, int dimension, Vec3 const& low,
-                                                 Vec3 const& high, Index most_nodes = 100'000) {
-  return make_scatter_lattice(HostInstance(), coordinates, nodes, area, dimension, low, high, most_nodes);
+                                                 std::vector<double> const& area, int dimension,
+                                                 ScatterLattice const& lattice) {
+  return make_scatter_lattice(HostInstance(), coordinates, nodes, area, dimension, lattice);
 }
 
 }  // namespace gridmorph

@@ -16,18 +16,18 @@
 namespace gridmorph::detail {
 
 template <class MemorySpace>
-using PackedPoints = Kokkos::View<kernels::PackedPoint const*, MemorySpace>;
+using PackedPoints = Kokkos::View<kernels::PackedVec3 const*, MemorySpace>;
 
 template <class Exec>
 PackedPoints<typename Exec::memory_space> pack(Exec const& exec, CoordinateViews<typename Exec::memory_space> const& c,
                                                Index n_nodes) {
-  Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const points(
+  Kokkos::View<kernels::PackedVec3*, typename Exec::memory_space> const points(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::points"), n_nodes);
   kernels::pack_points(exec, field_of(c), points);
   return points;
 }
 
-KOKKOS_INLINE_FUNCTION Vec3 point(kernels::PackedPoint const& p) { return {p.x, p.y, p.z}; }
+KOKKOS_INLINE_FUNCTION Vec3 point(kernels::PackedVec3 const& p) { return {p.x, p.y, p.z}; }
 template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION Vec3 point_at(PackedPoints<MemorySpace> const& points, Index32 node) {
   return point(points(node));

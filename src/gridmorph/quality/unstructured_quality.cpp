@@ -104,11 +104,11 @@ KOKKOS_INLINE_FUNCTION kernels::FaceGeometry face_of(ElementTables<MemorySpace> 
 
 /// (n_elements) centres.
 template <class Exec>
-Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> element_centres(
+Kokkos::View<kernels::PackedVec3*, typename Exec::memory_space> element_centres(
     Exec const& exec, ElementTables<typename Exec::memory_space> const& tables,
     PackedPoints<typename Exec::memory_space> const& points, bool solid) {
   Index const n = tables.elements.size();
-  Kokkos::View<kernels::PackedPoint*, typename Exec::memory_space> const centres(
+  Kokkos::View<kernels::PackedVec3*, typename Exec::memory_space> const centres(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::quality::centres"), n);
   Kokkos::parallel_for(
       "gridmorph::measure_quality::centres", Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, n),
@@ -133,7 +133,7 @@ template <class MemorySpace>
 KOKKOS_INLINE_FUNCTION FaceQuality face_quality(ElementTables<MemorySpace> const& tables,
                                                 SideTables<MemorySpace> const& sides,
                                                 PackedPoints<MemorySpace> const& points,
-                                                Kokkos::View<kernels::PackedPoint*, MemorySpace> const& centres,
+                                                Kokkos::View<kernels::PackedVec3*, MemorySpace> const& centres,
                                                 Index e) {
   return tables.with_faces(points, e, [&](auto const& faces) {
     FaceQuality worst;

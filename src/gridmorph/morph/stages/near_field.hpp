@@ -7,7 +7,9 @@
 #include <gridmorph/morph/stages/transposed_tables.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace gridmorph::stages {
 
@@ -24,8 +26,8 @@ class NearField {
         beside_(upload(exec, plan.beside_slots, name("beside"))),
         n_driving_(Index(plan.driving.size())),
         walls_(exec, plan.walls, name("walls")),
-        layers_(upload(exec, plan.near, name("layers"))),
-        fade_(upload(exec, plan.near_fade, name("fade"))) {
+        layers_(upload(exec, plan.near, name("layers"))) {
+    list_nodes(exec, plan);
     if (back == nullptr) return;
     layers_back_ = transposed(exec, plan.near, plan.n_nodes, name("layers_back"));
     std::vector<Index32> readers = plan.near.rows.target;
@@ -44,7 +46,7 @@ class NearField {
              kernels::FieldMisses<Memory>{nodes, walls_.field(), x, f.u.data(), f.work.data()});
     kernels::interpolate_layers("gridmorph::near::layers", exec, layers_, f.work.data());
     launch("gridmorph::near", exec,
-           kernels::FieldAndMissing<Memory>{layers_.rows.target, fade_, walls_.field(), x, f.work.data(), f.u.data()});
+           kernels::FieldAndMissing<Memory>{node_, fade_, walls_.field(), x, f.work.data(), f.u.data()});
   }
 
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
@@ -52,7 +54,7 @@ class NearField {
     clear<Vec3>(exec, g.work);
     clear<Vec3>(exec, g.read);
     launch("gridmorph::transposed::near", exec,
-           kernels::FieldAndMissingBack<Memory>{layers_.rows.target, fade_, g.u.data(), g.work.data(), g.read.data()});
+           kernels::FieldAndMissingBack<Memory>{node_, fade_, g.u.data(), g.work.data(), g.read.data()});
     kernels::gather_layers("gridmorph::transposed::near::layers", exec, layers_back_, g.work.data());
     for (auto const& nodes : seeds_)
       launch("gridmorph::transposed::near::missing", exec,
@@ -66,11 +68,30 @@ class NearField {
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
 
+  /// The nodes of all layers in the order of their numbers: layer by layer a cache line would be read once per layer
+  /// that has nodes in it. Fences.
+  void list_nodes(Exec const& exec, UnstructuredPlan const& plan) {
+    std::vector<std::pair<Index32, float>> nodes;
+    for (std::size_t r = 0; r < plan.near_fade.size(); ++r)
+      nodes.emplace_back(plan.near.rows.target[r], plan.near_fade[r]);
+    std::sort(nodes.begin(), nodes.end());
+    std::vector<Index32> node;
+    std::vector<float> fade;
+    for (auto const& [n, f] : nodes) {
+      node.push_back(n);
+      fade.push_back(f);
+    }
+    node_ = upload(exec, node, name("node"));
+    fade_ = upload(exec, fade, name("fade"));
+    compat::fence(exec, "gridmorph::NearField (host tables may go)");
+  }
+
   List<Exec, Index32> seeds_[2];  ///< on moving walls and at the ends of their columns, where layers begin
   List<Exec, Index32> beside_;
   Index n_driving_;
   SmoothField<Exec, kernels::AffineMotion> walls_;
   kernels::LayerTable<Memory> layers_;
+  List<Exec, Index32> node_;  ///< of layers_
   List<Exec, float> fade_;
   kernels::TransposedLayers<Memory> layers_back_;
   std::optional<SmoothFieldBack<Exec, kernels::AffineMotion>> walls_back_;

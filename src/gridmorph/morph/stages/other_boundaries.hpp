@@ -155,7 +155,7 @@ class SpreadResidual {
         detail_(upload(exec, plan.residual_detail, name("detail"))),
         detail_begins_(
             upload_sources(exec, plan.residual_nodes, plan.residual_detail, plan.n_nodes, name("detail_begins"))),
-        detail_fade_(upload(exec, plan.detail_fade, name("detail_fade"))) {
+        detail_fade_(by_node(exec, plan)) {
     if (back == nullptr || residual_.empty()) return;
     std::vector<Index32> readers;
     for (std::size_t n = 0; n < plan.fade.size(); ++n)
@@ -171,12 +171,11 @@ class SpreadResidual {
            kernels::TakePrescribed<Memory>{node_, f.u.data(), f.work.data(), listed_.data()});
     if (residual_.empty()) return;
     residual_.enqueue(exec, listed_.data());
-    launch("gridmorph::residual", exec, kernels::AddField<Memory>{fade_, residual_.field(), x, f.u.data()});
     launch("gridmorph::residual::missing", exec,
            kernels::FieldMisses<Memory>{detail_begins_, residual_.field(), x, f.work.data(), f.work.data()});
     kernels::interpolate_layers("gridmorph::residual::layers", exec, detail_, f.work.data());
-    launch("gridmorph::residual::detail", exec,
-           kernels::AddShare<Memory>{detail_.rows.target, detail_fade_, f.work.data(), f.u.data()});
+    launch("gridmorph::residual", exec,
+           kernels::AddFieldAndMissing<Memory>{fade_, detail_fade_, residual_.field(), x, f.work.data(), f.u.data()});
   }
   void transpose(Exec const& exec, Baseline const& x, StageField<Exec> const&, StageField<Exec> const& g) const {
     clear<Vec3>(exec, g.work);
@@ -190,11 +189,20 @@ class SpreadResidual {
   using Memory = typename Exec::memory_space;
   static std::string name(char const* what) { return region + "::" + what; }
 
+  /// The shares of what the lattice misses, of all nodes. Fences.
+  static List<Exec, float> by_node(Exec const& exec, UnstructuredPlan const& plan) {
+    std::vector<float> share(plan.residual.empty() ? 0 : std::size_t(plan.n_nodes), 0);
+    for (std::size_t r = 0; r < plan.detail_fade.size(); ++r)
+      share[plan.residual_detail.rows.target[r]] = plan.detail_fade[r];
+    auto const out = upload(exec, share, name("detail_fade"));
+    compat::fence(exec, "gridmorph::SpreadResidual (host tables may go)");
+    return out;
+  }
   /// From gradients of the residual over all nodes to those of what is missing.
   void spread_back(Exec const& exec, Baseline const& x, StageField<Exec> const& g) const {
     using kernels::launch;
-    launch("gridmorph::transposed::residual::detail", exec,
-           kernels::ShareOf<Memory>{detail_.rows.target, detail_fade_, g.u.data(), g.work.data()});
+    launch("gridmorph::transposed::residual::detail", exec, 0, Index(detail_fade_.extent(0)),
+           kernels::ReadWithShare<Memory>{detail_fade_, g.u.data(), g.work.data()});
     kernels::gather_layers("gridmorph::transposed::residual::layers", exec, detail_back_, g.work.data());
     launch("gridmorph::transposed::residual::layers_done", exec,
            kernels::ClearListed<Memory>{detail_.rows.target, g.work.data()});
@@ -211,7 +219,7 @@ class SpreadResidual {
   List<Exec, float> fade_;
   kernels::LayerTable<Memory> detail_;
   List<Exec, Index32> detail_begins_;  ///< boundary nodes that it reads
-  List<Exec, float> detail_fade_;
+  List<Exec, float> detail_fade_;      ///< (n_nodes)
   std::optional<SmoothFieldBack<Exec, Vec3>> residual_back_;
   kernels::TransposedLayers<Memory> detail_back_;
 };

@@ -12,8 +12,8 @@ class SmoothField {
  public:
   SmoothField(Exec const& exec, InverseDistanceField const& plan, std::string const& label)
       : table_(upload(exec, plan, label)),
-        group_(room_for<Value>(exec, plan.n_groups, label + "::groups")),
-        value_(room_for<Vec3>(exec, plan.lattice.size(), label + "::values")) {}
+        group_(room_for<kernels::PackedValue<Value>>(exec, plan.n_groups, label + "::groups")),
+        value_(room_for<kernels::PackedVec3>(exec, plan.empty() ? 0 : plan.shape.size(), label + "::values")) {}
 
   [[nodiscard]] bool empty() const { return table_.empty(); }
   /// given: what the boundary nodes say, in the order of the plan.
@@ -22,12 +22,12 @@ class SmoothField {
   }
   /// The last one enqueued.
   [[nodiscard]] kernels::LatticeField field() const { return {table_.shape, value_.data()}; }
-  [[nodiscard]] List<Exec, Vec3> const& values() const { return value_; }
+  [[nodiscard]] List<Exec, kernels::PackedVec3> const& values() const { return value_; }
 
  private:
   kernels::InverseDistanceTable<typename Exec::memory_space> table_;
-  List<Exec, Value> group_;
-  List<Exec, Vec3> value_;
+  List<Exec, kernels::PackedValue<Value>> group_;
+  List<Exec, kernels::PackedVec3> value_;  ///< zero at nodes that nobody reads
 };
 
 }  // namespace gridmorph::stages

@@ -146,9 +146,10 @@ struct ReadersOfCells {
     for (int a = 0; a < 3; ++a) cells[a] = std::max<Index>(1, shape.nodes[a] - 1);
     begin.assign(std::size_t(cells[0] * cells[1] * cells[2]) + 1, 0);
     std::vector<Index> cell;
+    kernels::LatticeReader<Vec3> const lattice(shape);
     for (Index32 const n : nodes) {
-      kernels::PlaceInCell const at = shape.place(x[n]);
-      cell.push_back(at.cell[0] + cells[0] * (at.cell[1] + cells[1] * at.cell[2]));
+      Vec3 const at = lattice.place(x[n]).cell;
+      cell.push_back(Index(at.x) + cells[0] * (Index(at.y) + cells[1] * Index(at.z)));
       ++begin[std::size_t(cell.back()) + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());

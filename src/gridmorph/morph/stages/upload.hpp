@@ -12,6 +12,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -45,7 +46,7 @@ kernels::LayerTable<typename Exec::memory_space> upload(Exec const& exec, LayerR
   return {upload(exec, layers.rows, label), layers.level};
 }
 
-/// Those of `nodes` that rows read: of boundary layers only the ends of columns. Fences.
+/// Those of `nodes` that rows read, ascending: of boundary layers only the ends of columns. Fences.
 template <class Exec>
 List<Exec, Index32> upload_sources(Exec const& exec, std::vector<Index32> const& nodes, LayerRows const& layers,
                                    Index n_nodes, std::string const& label) {
@@ -54,17 +55,23 @@ List<Exec, Index32> upload_sources(Exec const& exec, std::vector<Index32> const&
   std::vector<Index32> sources;
   for (Index32 const n : nodes)
     if (read[n] != 0) sources.push_back(n);
+  std::sort(sources.begin(), sources.end());
   auto const out = upload(exec, sources, label);
   compat::fence(exec, "gridmorph::upload_sources (host tables may go)");
   return out;
 }
 
+/// Fences.
 template <class Exec>
 kernels::InverseDistanceTable<typename Exec::memory_space> upload(Exec const& exec, InverseDistanceField const& field,
                                                                   std::string const& label) {
-  return {upload(exec, field.leaves, label + "::leaves"), upload(exec, field.groups, label + "::groups"),
-          upload(exec, field.lattice, label + "::lattice"), upload(exec, field.centre, label + "::centre"),
-          field.shape};
+  std::vector<kernels::PackedVec3> centre;
+  for (Vec3 const& c : field.centre) centre.push_back({c.x, c.y, c.z});
+  kernels::InverseDistanceTable<typename Exec::memory_space> const table{
+      upload(exec, field.leaves, label + "::leaves"), upload(exec, field.groups, label + "::groups"),
+      upload(exec, field.lattice, label + "::lattice"), upload(exec, centre, label + "::centre"), field.shape};
+  compat::fence(exec, "gridmorph::upload (centres of groups may go)");
+  return table;
 }
 
 }  // namespace gridmorph::stages

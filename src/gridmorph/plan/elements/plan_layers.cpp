@@ -187,8 +187,10 @@ void UnstructuredPlanner::plan_smooth_walls() {
     if (near_[n]) box.include(mesh_.coordinates[n]);
   plan.beside_slots = slots_beside_walls(Beside::near);
   std::vector<Index32> const sources = plan.smooth_sources();
-  plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, box.low,
-                                    box.high, most_lattice_nodes, fine_opening);
+  ScatterLattice lattice{box.low, box.high, most_lattice_nodes, fine_opening, plan.near.rows.target};
+  for (auto const* nodes : {&plan.driving, &plan.columns.node})
+    lattice.readers.insert(lattice.readers.end(), nodes->begin(), nodes->end());
+  plan.walls = make_scatter_lattice(host_, mesh_.coordinates, sources, areas(sources), mesh_.dimension, lattice);
   double const reach = 4 * plan.walls.shape.spacing;
   for (Index32 const n : plan.near.rows.target) {
     double const s = std::min(1.0, beyond_column(std::size_t(n)) / reach);

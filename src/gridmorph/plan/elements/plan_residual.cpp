@@ -25,8 +25,11 @@ void UnstructuredPlanner::plan_residual() {
   plan_start();
   MeshExtent const box = extent_of(host_, mesh_.coordinates);
   std::vector<Index32> const boundary(plan.residual_nodes.begin(), plan.residual_nodes.end() - n_held());
-  plan.residual =
-      make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low, box.high);
+  ScatterLattice lattice{box.low, box.high};
+  lattice.readers = plan.residual_nodes;
+  for (std::size_t n = 0; n < plan.fade.size(); ++n)
+    if (plan.fade[n] != 0) lattice.readers.push_back(Index32(n));
+  plan.residual = make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, lattice);
   if (plan.residual.empty()) return;
   double const reach = 2 * plan.residual.shape.spacing;
   Mask wanted = mask();
@@ -61,9 +64,10 @@ void UnstructuredPlanner::plan_start() {
   MeshExtent const box = extent_of(host_, mesh_.coordinates);
   std::vector<Index32> const boundary(start.given.begin(), start.given.begin() + n_boundary);
   // It is needed on surfaces alone, and what it misses passes along them.
-  constexpr Index most_nodes = 20'000;
-  start.residual = make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, box.low,
-                                        box.high, most_nodes);
+  ScatterLattice lattice{box.low, box.high, 20'000};
+  lattice.readers = start.given;
+  lattice.readers.insert(lattice.readers.end(), start.node.begin(), start.node.end());
+  start.residual = make_scatter_lattice(host_, mesh_.coordinates, boundary, areas(boundary), mesh_.dimension, lattice);
   double const reach = 2 * start.residual.shape.spacing;
   std::vector<Index32> place(mesh_.n_nodes(), -1);
   for (std::size_t k = 0; k < start.node.size(); ++k) {
