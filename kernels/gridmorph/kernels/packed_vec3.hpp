@@ -114,11 +114,6 @@ KOKKOS_FORCEINLINE_FUNCTION void put(T& to, T const& value) {
 }
 KOKKOS_FORCEINLINE_FUNCTION void put(PackedVec3& to, Vec3 const& v) { to = {v.x, v.y, v.z}; }
 
-/// The component along an axis, which the compiler knows.
-KOKKOS_FORCEINLINE_FUNCTION double component(Vec3 const& v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 #ifdef GRIDMORPH_WIDE_VECTORS
 inline void put(Vec3& to, WideVec3 const& v) { to = {v[0], v[1], v[2]}; }
 inline void put(PackedVec3& to, WideVec3 const& v) { store_lanes(&to.x, v.four()); }

@@ -27,6 +27,11 @@ struct Vec3 {
   }
 };
 
+/// Along x, y or z: axis 0, 1 or 2.
+KOKKOS_FORCEINLINE_FUNCTION double component(Vec3 const& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
 /// Row-major 3x3 matrix.
 struct Mat3 {
   double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -1,6 +1,6 @@
 #include <gridmorph/geometry/affine_fit.hpp>
-#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
-#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/facet_boxes.hpp>
 #include <gridmorph/kernels/box_tree.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 
 #include <algorithm>
 #include <numeric>

@@ -1,7 +1,7 @@
 // Where a mesh is cut for pictures.
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/cylindrical.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 #include <gridmorph/run/mesh_cuts.hpp>
 #include <gridmorph/run/run_page.hpp>
 

@@ -1,6 +1,6 @@
 #include <gridmorph/boundary/periodic_axis.hpp>
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/geometry/component.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 #include <gridmorph/motion/boundary_conditions.hpp>
 #include <gridmorph/run/mesh_cuts.hpp>
 #include <gridmorph/run/view_parts.hpp>

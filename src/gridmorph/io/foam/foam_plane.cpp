@@ -1,6 +1,6 @@
-#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/io/foam/foam_parts.hpp>
 #include <gridmorph/io/foam/foam_plane.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 #include <gridmorph/mesh/extent.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/geometry/component.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 #include <gridmorph/plan/elements/background.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include <gridmorph/geometry/component.hpp>
 #include <gridmorph/geometry/symmetric_eigen.hpp>
 #include <gridmorph/geometry/unit.hpp>
+#include <gridmorph/kernels/vec3.hpp>
 #include <gridmorph/plan/elements/wrap.hpp>
 
 #include <algorithm>
