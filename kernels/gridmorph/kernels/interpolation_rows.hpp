@@ -10,7 +10,8 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
-#include <gridmorph/kernels/vector_runs.hpp>
+#include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/packed_vec3.hpp>
 
 #include <type_traits>
 #include <vector>
@@ -35,12 +36,12 @@ struct LayerTable {
 };
 
 /// The weighted mean that row r makes of source[item].
-template <class V = Vec3, class MemorySpace, class Source>
+template <class MemorySpace, class Source>
 KOKKOS_INLINE_FUNCTION auto mean_of_row(InterpolationTable<MemorySpace> const& rows, Source const& source, Index r) {
   Index const from = rows.first(r), to = rows.first(r + 1);
-  auto const base = as<V>(source[rows.item(from)]);
+  auto const base = as<Vec3>(source[rows.item(from)]);
   std::remove_const_t<decltype(base)> sum{};
-  for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (as<V>(source[rows.item(k)]) - base);
+  for (Index k = from + 1; k < to; ++k) sum += double(rows.weight(k)) * (as<Vec3>(source[rows.item(k)]) - base);
   return base + sum;
 }
 
@@ -50,12 +51,7 @@ struct InterpolateRows {
   InterpolationTable<MemorySpace> rows;
   Source source;
   Value* value;
-
-  template <class V>
-  KOKKOS_INLINE_FUNCTION void run(Index begin, Index end) const {
-    for (Index r = begin; r < end; ++r) put(value[rows.target(r)], mean_of_row<V>(rows, source, r));
-  }
-  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { run<Vec3>(r, r + 1); }
+  KOKKOS_INLINE_FUNCTION void operator()(Index r) const { put(value[rows.target(r)], mean_of_row(rows, source, r)); }
 };
 
 /// Rows begin <= r < end. `source` and `value` may be the same array where no row of them names the target of another.

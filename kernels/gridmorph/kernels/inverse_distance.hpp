@@ -15,6 +15,7 @@
 #include <gridmorph/kernels/interpolation_rows.hpp>
 #include <gridmorph/kernels/uniform_lattice.hpp>
 #include <gridmorph/kernels/vector_array.hpp>
+#include <gridmorph/kernels/vector_runs.hpp>
 
 namespace gridmorph::kernels {
 
