@@ -62,7 +62,6 @@ std::vector<Example> examples() {
 }
 
 Vec3 axis(int i) { return {i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0}; }
-double component(Vec3 const& v, int i) { return dot(v, axis(i)); }
 
 TEST(RelativeShape, GradientAndHessianAreThoseOfDifferences) {
   for (Example const& e : examples())
