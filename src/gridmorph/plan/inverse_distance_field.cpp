@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 
 namespace gridmorph {
 
@@ -30,10 +31,14 @@ kernels::UniformLattice lattice_over(ScatterLattice const& asked, int dimension)
 }
 
 /// The nodes of a lattice that nodes of a mesh read, ascending. Those a little off count too: who morphs may have the
-/// mesh in single precision.
+/// mesh in single precision, far from the origin too.
 std::vector<Index> nodes_read(kernels::UniformLattice const& lattice, Coordinates const& x,
                               std::vector<Index32> const& readers) {
-  constexpr double margin = 1e-3;  // of a cell
+  Vec3 const &low = lattice.low, high = lattice.position(lattice.size() - 1);
+  double const farthest = std::max(
+      {std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+  double const off = double(std::numeric_limits<float>::epsilon()) * farthest / lattice.spacing;
+  double const margin = std::max(1e-3, off);  // of a cell
   kernels::LatticeReader<Vec3> const at(lattice);
   std::vector<std::uint8_t> is_read(lattice.size(), 0);
   for (Index32 const n : readers) {
@@ -50,7 +55,7 @@ std::vector<Index> nodes_read(kernels::UniformLattice const& lattice, Coordinate
   }
   std::vector<Index> out;
   for (Index n = 0; n < lattice.size(); ++n)
-    if (readers.empty() || is_read[n] != 0) out.push_back(n);
+    if (readers.empty() || margin > 1 || is_read[n] != 0) out.push_back(n);
   return out;
 }
 
