@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace gridmorph::test {
@@ -206,6 +207,42 @@ TEST(InverseDistanceField, HasRowsWhereNodesReadItAndTheSameValuesThere) {
       for (double const off : {-1e-7, 1e-7})
         EXPECT_LT(distance(lattice.at(packed_few.data(), x + off * Vec3{1, 1, 1}), value), 1e-5);
     }
+  }
+}
+
+TEST(InverseDistanceField, HasRowsForWhatIsReadInSinglePrecisionFarFromTheOrigin) {
+  Vec3 const far{12345.678, -54321.09, 33333.3};
+  auto const shifted = [&](std::vector<Vec3> points) {
+    for (Vec3& p : points) p = p + far;
+    return points;
+  };
+  Vec3 const low = far - Vec3{4, 4, 4}, high = far + Vec3{12, 12, 12};
+  auto const cube = shifted(cube_surface(8));
+  UniformLattice const shape = Sources(cube).planned(3, low, high, 4000).shape;
+  // Nodes of the mesh on faces of the lattice's cells, where round-off decides which of two cells they are in.
+  std::vector<Vec3> points = cube;
+  std::vector<Index32> readers;
+  for (Index n = 0; n < shape.size(); n += 61)
+    for (Vec3 const& within : {Vec3{0, 0.3, 0.6}, Vec3{0.6, 0, 0.3}, Vec3{0.3, 0.6, 0}}) {
+      readers.push_back(Index32(points.size()));
+      points.push_back(shape.position(n) + shape.spacing * within);
+    }
+  Coordinates x(Index(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n) x.set(Index(n), points[n]);
+  std::vector<Index32> sources(cube.size());
+  std::iota(sources.begin(), sources.end(), 0);
+  ScatterLattice lattice{low, high, 4000};
+  lattice.readers = readers;
+  auto const planned = make_scatter_lattice(x, sources, std::vector<double>(cube.size(), 1), 3, lattice);
+  ASSERT_LT(planned.lattice.size(), planned.shape.size()) << "a row for all says nothing";
+  std::vector<kernels::PackedVec3> values(planned.shape.size());
+  double const none = std::numeric_limits<double>::quiet_NaN();
+  for (auto& v : values) kernels::put(v, Vec3{none, none, none});
+  for (Index32 const n : planned.lattice.target) kernels::put(values[n], Vec3{1, 2, 3});
+  kernels::LatticeReader<Vec3> const at(planned.shape);
+  for (Index32 const n : readers) {
+    Vec3 const rounded{double(float(points[n].x)), double(float(points[n].y)), double(float(points[n].z))};
+    EXPECT_LT(distance(at.at(values.data(), rounded), Vec3{1, 2, 3}), 1e-12) << n;
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/kernels/field.hpp>
-#include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/items_by_kind.hpp>
 #include <gridmorph/kernels/slip_edge.hpp>
 #include <gridmorph/kernels/slip_surface.hpp>
 
@@ -45,24 +45,10 @@ struct SlipEndBaselines {
   }
 };
 
-/// What ends slide on. A kernel that leaves out what its ends have not needs a fraction of the registers and no stack,
-/// and so a GPU runs several times as many of its items at once; the host has one kernel for all.
-enum class SlipEndKind {
-  simple,  ///< one surface each, of SlipKinds::simple
-  smooth,  ///< surfaces of SlipKinds::smooth
-  any
-};
-inline constexpr int n_slip_end_kinds = 3;
-
-/// Ascending items: ends that slide on nothing are before first[0], those of kind k from first[k] to first[k + 1].
-struct SlipEndsByKind {
-  Index first[n_slip_end_kinds + 1] = {};
-};
-
 /// The values of slip ends, d = (what the surfaces make of u) - u, in the chain's frame; with `Rate` its derivative
 /// where u changes by `rate` per unit of time: constrain_to_all() of slip_edge.hpp. One item per end that slides on
-/// nothing, whose value is zero, then one per slip end.
-template <class MemorySpace, bool Rate, SlipEndKind Kind = SlipEndKind::any>
+/// nothing, whose value is zero, then one per slip end; where those are simple, each slides on one surface.
+template <class MemorySpace, bool Rate, SlipKinds Of = SlipKinds::any>
 struct SlipEndValues {
   Kokkos::View<SlipEnd const*, MemorySpace> ends;
   Kokkos::View<SlipEndBaseline const*, MemorySpace> baselines;
@@ -72,12 +58,8 @@ struct SlipEndValues {
   Field<double> values;
   Kokkos::View<Index const*, MemorySpace> at_rest = {};  ///< values of ends that slide on nothing
 
-  static constexpr SlipKinds kinds = Kind == SlipEndKind::simple   ? SlipKinds::simple
-                                     : Kind == SlipEndKind::smooth ? SlipKinds::smooth
-                                                                   : SlipKinds::any;
-
   /// The same for ends of another kind.
-  template <SlipEndKind Other>
+  template <SlipKinds Other>
   [[nodiscard]] SlipEndValues<MemorySpace, Rate, Other> of_kind() const {
     return {ends, baselines, surfaces, matrices, u, rate, values, at_rest};
   }
@@ -95,12 +77,12 @@ struct SlipEndValues {
     SlipEndBaseline const& baseline = baselines(n);
     Vec3 const given = in_frame(end.to_node, u_slot), given_rate = in_frame(end.to_node, rate_slot);
     Vec3 wanted = given, wanted_rate = given_rate;
-    int const count = Kind == SlipEndKind::simple || end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
+    int const count = Of == SlipKinds::simple || end.surface[1] < 0 ? 1 : end.surface[2] < 0 ? 2 : 3;
     Surfaces const of_end{surfaces, end};
     Offsets const own{baseline};
     if (Rate && count == 1)  // needs no displacement for it
       wanted_rate = of_end(0).constrain_rate(baseline.position, own(0), given, given_rate);
-    else if constexpr (Kind == SlipEndKind::simple)
+    else if constexpr (Of == SlipKinds::simple)
       wanted = of_end(0).constrain(baseline.position, own(0), given);
     else
       constrain_to_all<Rate>(count, of_end, own, baseline.position, wanted, wanted_rate);
@@ -114,9 +96,7 @@ struct SlipEndValues {
   struct Surfaces {
     Kokkos::View<SlipSurfaceView const*, MemorySpace> const& all;
     SlipEnd const& end;
-    KOKKOS_INLINE_FUNCTION SlipSurfaceOf<kinds> operator()(int m) const {
-      return SlipSurfaceOf<kinds>(all(end.surface[m]));
-    }
+    KOKKOS_INLINE_FUNCTION SlipSurfaceOf<Of> operator()(int m) const { return SlipSurfaceOf<Of>(all(end.surface[m])); }
   };
   struct Offsets {
     SlipEndBaseline const& baseline;
@@ -139,18 +119,9 @@ void slip_end_baselines(Exec const& exec, Kokkos::View<SlipEnd const*, typename 
 
 /// End values of a pass: zero where its lines do not slide, `kernel` for the others.
 template <class Exec, bool Rate>
-void slip_ends(Exec const& exec, SlipEndsByKind const& items,
+void slip_ends(Exec const& exec, ItemsByKind<SlipKinds> const& items,
                SlipEndValues<typename Exec::memory_space, Rate> const& kernel) {
-  if constexpr (TileShape<Exec>::host) {
-    launch("gridmorph::slip_ends", exec, 0, items.first[n_slip_end_kinds], kernel);
-  } else {
-    auto const of = [&]<SlipEndKind kind>(Index begin) {
-      launch("gridmorph::slip_ends", exec, begin, items.first[int(kind) + 1], kernel.template of_kind<kind>());
-    };
-    of.template operator()<SlipEndKind::simple>(0);
-    of.template operator()<SlipEndKind::smooth>(items.first[int(SlipEndKind::smooth)]);
-    of.template operator()<SlipEndKind::any>(items.first[int(SlipEndKind::any)]);
-  }
+  launch_by_kind("gridmorph::slip_ends", exec, items, kernel);
 }
 
 }  // namespace gridmorph::kernels

@@ -24,7 +24,7 @@ enum class SlipKind {
   facets       ///< nodes stay on a discrete surface made smooth, moved along its normals
 };
 
-/// Which of them a surface may be.
+/// Which of them a surface may be, and the ends that slide on some.
 enum class SlipKinds {
   simple,  ///< neither meridional nor of facets
   smooth,  ///< none of facets

@@ -12,7 +12,7 @@
 
 #include <gridmorph/kernels/common_rows.hpp>
 #include <gridmorph/kernels/fused_row.hpp>
-#include <gridmorph/kernels/launch.hpp>
+#include <gridmorph/kernels/items_by_kind.hpp>
 #include <gridmorph/kernels/node_copy.hpp>
 #include <gridmorph/kernels/row_correction.hpp>
 #include <gridmorph/kernels/tile.hpp>
@@ -67,18 +67,11 @@ struct TurnedEndsBatch {
   }
 };
 
-/// What the terms of a box may have. A kernel that leaves out what its boxes have not needs a fraction of the
-/// registers, and so a GPU runs several times as many of its items at once; the host has one kernel for all.
+/// What the terms of a box may have.
 enum class VolumeKind {
   plain,   ///< neither known sides, nor ends that turn, nor frames of their own, nor a motion in common
   turned,  ///< no known sides
   any
-};
-inline constexpr int n_volume_kinds = 3;
-
-/// Ascending items: those of boxes of kind k are from first[k] to first[k + 1].
-struct ItemsByKind {
-  Index first[n_volume_kinds + 1] = {};
 };
 
 /// One item per tile of a box, of boxes of a kind. `baseline` and `out` may be the same arrays.
@@ -398,20 +391,10 @@ struct VolumePass {
 };
 /// All nodes inside the boxes that the pass was made for.
 template <class Exec, class Shape>
-void pass_volume(Exec const& exec, ItemsByKind const& items,
+void pass_volume(Exec const& exec, ItemsByKind<VolumeKind> const& items,
                  VolumePass<typename Exec::memory_space, Shape> const& pass) {
   static_assert(std::is_same_v<Shape, TileShape<Exec>>, "the tiles of another execution space");
-  if constexpr (Shape::host) {
-    launch("gridmorph::volume", exec, 0, items.first[n_volume_kinds], pass);
-  } else {
-    auto const of = [&]<VolumeKind kind>() {
-      launch("gridmorph::volume", exec, items.first[int(kind)], items.first[int(kind) + 1],
-             pass.template of_kind<kind>());
-    };
-    of.template operator()<VolumeKind::plain>();
-    of.template operator()<VolumeKind::turned>();
-    of.template operator()<VolumeKind::any>();
-  }
+  launch_by_kind("gridmorph::volume", exec, items, pass);
 }
 
 }  // namespace gridmorph::kernels

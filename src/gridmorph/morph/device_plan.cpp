@@ -154,12 +154,14 @@ std::vector<kernels::NearFieldLine> shifted(std::vector<kernels::NearFieldLine> 
   return lines;
 }
 
-kernels::SlipEndKind kind_of(kernels::SlipEnd const& end, std::vector<SlipSurface> const& surfaces) {
-  auto kind = end.surface[1] < 0 ? kernels::SlipEndKind::simple : kernels::SlipEndKind::smooth;
+/// What an end slides on.
+kernels::SlipKinds kind_of(kernels::SlipEnd const& end, std::vector<SlipSurface> const& surfaces) {
+  using kernels::SlipKinds;
+  auto kind = end.surface[1] < 0 ? SlipKinds::simple : SlipKinds::smooth;
   for (std::int32_t const number : end.surface) {
     if (number < 0) continue;
-    if (surfaces[number].kind == kernels::SlipKind::facets) return kernels::SlipEndKind::any;
-    if (surfaces[number].kind == kernels::SlipKind::meridional) kind = kernels::SlipEndKind::smooth;
+    if (surfaces[number].kind == kernels::SlipKind::facets) return SlipKinds::any;
+    if (surfaces[number].kind == kernels::SlipKind::meridional) kind = SlipKinds::smooth;
   }
   return kind;
 }
@@ -186,14 +188,11 @@ kernels::VolumeKind kind_of(kernels::VolumeBox const& box, JoinedTables const& j
   return kind;
 }
 
-/// The work of boxes that are sorted by kind; `items`: how many a box has.
-template <class Items>
-kernels::ItemsByKind items_by_kind(JoinedTables const& joined, Items const& items) {
-  kernels::ItemsByKind out;
-  for (kernels::VolumeBox const& box : joined.boxes)
-    for (int kind = int(kind_of(box, joined)) + 1; kind <= kernels::n_volume_kinds; ++kind)
-      out.first[kind] += items(box);
-  return out;
+/// Puts entries in the order of their kinds, where each kind has a kernel of its own.
+template <bool Host, class Entry, class KindOf>
+void sort_by_kind(std::vector<Entry>& entries, KindOf const& kind) {
+  if constexpr (!Host)
+    std::stable_sort(entries.begin(), entries.end(), [&](auto const& a, auto const& b) { return kind(a) < kind(b); });
 }
 
 void collect_parts(std::vector<VolumePart> const& parts, Shift const& shift,
@@ -376,14 +375,11 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     std::vector<kernels::SlipEnd> slip_ends = pass.ends;
     for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
     auto const kind = [&](kernels::SlipEnd const& end) { return kind_of(end, plan.surfaces); };
-    if constexpr (!Shape::host)
-      std::stable_sort(slip_ends.begin(), slip_ends.end(),
-                       [&](auto const& a, auto const& b) { return kind(a) < kind(b); });
+    sort_by_kind<Shape::host>(slip_ends, kind);
     std::vector<Index> const rest = at_rest(slip_ends, shift.end_value, pass.lines.n_end_values);
     device.at_rest = table(exec, rest, "slip_ends::at_rest");
     for (Index& first : device.items.first) first = Index(rest.size());
-    for (kernels::SlipEnd const& end : slip_ends)
-      for (int after = int(kind(end)) + 1; after <= kernels::n_slip_end_kinds; ++after) ++device.items.first[after];
+    for (kernels::SlipEnd const& end : slip_ends) device.items.add(kind(end), 1);
     device.ends = table(exec, slip_ends, "slip_ends");
     device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
@@ -405,10 +401,9 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     append(joined.terms, of_box[b]);
     joined.boxes.push_back(box);
   }
-  if constexpr (!Shape::host)
-    std::stable_sort(joined.boxes.begin(), joined.boxes.end(),
-                     [&](auto const& a, auto const& b) { return kind_of(a, joined) < kind_of(b, joined); });
-  volume_items = items_by_kind(joined, Volume::items);
+  auto const kind = [&](kernels::VolumeBox const& box) { return kind_of(box, joined); };
+  sort_by_kind<Shape::host>(joined.boxes, kind);
+  for (kernels::VolumeBox const& box : joined.boxes) volume_items.add(kind(box), Volume::items(box));
 
   lines.chains = table(exec, joined.lines.chains, "chains");
   lines.segments = table(exec, joined.lines.segments, "segments");

@@ -87,7 +87,7 @@ struct DeviceSpread {
   Kokkos::View<kernels::SlipEnd*, Memory> ends;               ///< off the host kind after kind
   Kokkos::View<kernels::SlipEndBaseline*, Memory> baselines;  ///< per end
   Kokkos::View<Index*, Memory> at_rest;                       ///< values of ends that slide on nothing
-  kernels::SlipEndsByKind items;
+  kernels::ItemsByKind<kernels::SlipKinds> items;
   WorkList<kernels::SkeletonSweep, Memory> sweeps;
   Index first_value = 0, n_values = 0;
 };
@@ -154,7 +154,7 @@ struct DevicePlan {
   std::vector<DeviceStage<Exec>> stages;
   std::vector<DeviceSpread<Exec>> spreads;
   WorkList<kernels::VolumeBox, Memory> boxes;  ///< off the host kind after kind
-  kernels::ItemsByKind volume_items;
+  kernels::ItemsByKind<kernels::VolumeKind> volume_items;
   Kokkos::View<kernels::VolumeTerm*, Memory> terms;
   Kokkos::View<double*, Memory> t;          ///< line parameters
   Kokkos::View<double*, Memory> law_knots;  ///< of laws that are tables
