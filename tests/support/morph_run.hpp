@@ -44,26 +44,31 @@ struct Morphed {
 
 /// Every node starts as not-a-number, so that a node the plan forgets shows.
 template <class Exec>
-Morphed run_plan(Exec const& exec, Mesh const& mesh, Plan const& plan, std::vector<Vec3> const& boundary) {
+Morphed run_plan(Exec const& exec, Coordinates const& baseline, Plan const& plan, std::vector<Vec3> const& boundary) {
   using Memory = typename Exec::memory_space;
-  Coordinates nothing(mesh.n_nodes());
+  Coordinates nothing(baseline.size());
   for (Index n = 0; n < nothing.size(); ++n) {
     double const nan = std::numeric_limits<double>::quiet_NaN();
     nothing.set(n, {nan, nan, nan});
   }
   // On the host these are the arrays themselves, not copies.
-  DeviceField<Memory> const x(mesh.coordinates), u(nothing);
+  DeviceField<Memory> const x(baseline), u(nothing);
   auto const morpher = MorpherAccess::of(exec, plan, x);
   Morphed out;
   morpher.displacements(exec, upload<Memory>(boundary), u);
   exec.fence();
   out.displacement = u.host_copy();
-  Coordinates nothing_yet(mesh.n_nodes());
+  Coordinates nothing_yet(baseline.size());
   DeviceField<Memory> const moved(nothing_yet);
   morpher.positions(exec, upload<Memory>(boundary), moved);
   exec.fence();
   out.position = moved.host_copy();
   return out;
+}
+
+template <class Exec>
+Morphed run_plan(Exec const& exec, Mesh const& mesh, Plan const& plan, std::vector<Vec3> const& boundary) {
+  return run_plan(exec, mesh.coordinates, plan, boundary);
 }
 
 /// A mesh, its plan and what came of it.

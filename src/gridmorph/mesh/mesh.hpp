@@ -182,6 +182,12 @@ struct CellBox {
   IndexRange cells;
 };
 
+/// Nodes of one zone: nodes.begin <= (i, j, k) < nodes.end.
+struct NodeBox {
+  int zone = -1;
+  IndexRange nodes;
+};
+
 /// Node coordinates of all zones one after another, each component on its own (structure of arrays).
 struct Coordinates {
   using View = Kokkos::View<double*, Kokkos::HostSpace>;

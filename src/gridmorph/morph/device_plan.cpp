@@ -373,7 +373,11 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     Shift const shift(joined);
     DeviceSpread<Exec> device;
     std::vector<kernels::SlipEnd> slip_ends = pass.ends;
-    for (kernels::SlipEnd& end : slip_ends) end.value += shift.end_value;
+    auto const apart = positions(exec, pass.positions, "slip_ends::positions");
+    for (std::size_t n = 0; n < slip_ends.size(); ++n) {
+      slip_ends[n].value += shift.end_value;
+      if (!pass.positions.empty()) slip_ends[n].node = Index(n);
+    }
     auto const kind = [&](kernels::SlipEnd const& end) { return kind_of(end, plan.surfaces); };
     sort_by_kind<Shape::host>(slip_ends, kind);
     std::vector<Index> const rest = at_rest(slip_ends, shift.end_value, pass.lines.n_end_values);
@@ -384,7 +388,8 @@ DevicePlan<Exec>::DevicePlan(Exec const& exec, Plan const& plan, kernels::Field<
     device.baselines = Kokkos::View<kernels::SlipEndBaseline*, Memory>(
         Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, "gridmorph::Morpher::slip_ends::baselines"),
         slip_ends.size());
-    kernels::slip_end_baselines(exec, device.ends, surfaces.surfaces, x, device.baselines);
+    kernels::slip_end_baselines(exec, device.ends, surfaces.surfaces, pass.positions.empty() ? x : apart.read()[0],
+                                device.baselines);
     device.sweeps = sweeps(shifted(pass.sweeps, shift));
     device.first_value = shift.end_value;
     device.n_values = pass.lines.n_end_values;

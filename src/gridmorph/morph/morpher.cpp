@@ -216,7 +216,7 @@ Morpher<Exec>::Morpher(Exec const& exec, UnstructuredPlan const& plan, In const&
 template <BuiltFor Exec>
 Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
     : Morpher(PlanAccess::blocks(plan)
-                  ? Morpher(exec, PlanAccess::blocks(plan)->plan(), baseline, with_smoothing(options, plan))
+                  ? Morpher(exec, PlanAccess::applied(plan), baseline, with_smoothing(options, plan))
                   : Morpher(exec, PlanAccess::elements(plan)->plan, baseline, with_smoothing(options, plan))) {}
 
 template <BuiltFor Exec>

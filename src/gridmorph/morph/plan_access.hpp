@@ -26,6 +26,8 @@ struct PlanAccess {
   /// else asks for what it needs of them, below.
   static PreparedMorph const* blocks(MorphPlan const& plan);
   static PreparedUnstructured const* elements(MorphPlan const& plan);
+  /// What a Morpher applies, of blocks alone: the plan or, where `plan` is a share, that share of it.
+  static Plan const& applied(MorphPlan const& plan);
 
   /// Plans that were made in another way than by rules on a mesh as it stands.
   static MorphPlan of(PreparedMorph&& prepared);

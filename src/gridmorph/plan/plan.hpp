@@ -81,6 +81,7 @@ struct Stage {
 struct SpreadPass {
   LineTables lines;
   std::vector<kernels::SlipEnd> ends;
+  std::vector<Vec3> positions;  ///< of ends in the baseline; empty: those of their nodes
   std::vector<kernels::SkeletonSweep> sweeps;
   std::vector<VolumePart> volume;
   std::vector<std::string> description;
@@ -138,6 +139,7 @@ struct Plan {
   /// Line parameters of all stages and passes, one after another, where they are not to be measured along the
   /// baseline's lines.
   std::vector<double> line_parameters;
+  bool is_share = false;  ///< of some boxes of nodes (plan/share.hpp), whose numbers nodes have; it has no lines
 };
 
 /// The stages and chains in order, with the reason for each rank, as text; of a stage or a pass at most so many chains,

@@ -57,12 +57,6 @@ std::vector<CutPlane> room_limits(Mesh const& mesh, Topology const& topology, st
 std::vector<StageChain> near_field_chains(Mesh const& mesh, Topology const& topology, Known const& known,
                                           std::vector<NearField> const& fields);
 
-/// A box of nodes of one zone, bounding planes included.
-struct NodeBox {
-  int zone = -1;
-  IndexRange nodes;
-};
-
 /// The largest cosine of each box between grid edges of different directions that meet at one of its nodes, over the
 /// edges inside the box: the cosine of the smallest angle of the faces of its cells, which is never above 90 degrees.
 /// Edges of no length have no angle. The result does not depend on the number of threads, nor on how zones are numbered

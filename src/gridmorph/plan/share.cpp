@@ -1,0 +1,462 @@
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/plan/blocks/host_lines.hpp>
+#include <gridmorph/plan/share.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace gridmorph {
+namespace {
+
+IndexRange common(IndexRange const& a, IndexRange const& b) {
+  IndexRange out;
+  for (int d = 0; d < 3; ++d) {
+    out.begin[d] = std::max(a.begin[d], b.begin[d]);
+    out.end[d] = std::max(out.begin[d], std::min(a.end[d], b.end[d]));
+  }
+  return out;
+}
+
+Index3 minus(Index3 const& a, Index3 const& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+/// A box of the share, with the number of its first node there.
+struct OwnBox {
+  IndexRange nodes;
+  Index first = 0;
+
+  [[nodiscard]] std::array<Index, 3> strides() const {
+    return {1, Index(nodes.extent(0)), Index(nodes.extent(0)) * nodes.extent(1)};
+  }
+  [[nodiscard]] Index node(Index3 const& p) const {
+    auto const stride = strides();
+    Index3 const at = minus(p, nodes.begin);
+    return first + at[0] + at[1] * stride[1] + at[2] * stride[2];
+  }
+};
+
+/// The boxes by zone.
+class OwnBoxes {
+ public:
+  OwnBoxes(BoundaryMesh const& mesh, std::span<NodeBox const> boxes) : of_zone_(mesh.zones.size()) {
+    for (NodeBox const& box : boxes) {
+      if (box.zone < 0 || box.zone >= int(mesh.zones.size()))
+        throw ConfigError("a share asks for zone " + std::to_string(box.zone) + ", counted from 0; the mesh has " +
+                          std::to_string(mesh.zones.size()) + " zones");
+      Zone const& zone = mesh.zones[box.zone];
+      if (box.nodes.size() < 1 || common(box.nodes, {{0, 0, 0}, zone.extent}) != box.nodes)
+        throw ConfigError("a share asks for nodes " + to_string(box.nodes) + " of zone '" + zone.name +
+                          "', which has " + to_string(IndexRange{{0, 0, 0}, zone.extent}) +
+                          "; name a box of nodes within the zone");
+      of_zone_[box.zone].push_back({box.nodes, n_nodes_});
+      n_nodes_ += box.nodes.size();
+    }
+  }
+  [[nodiscard]] Index n_nodes() const { return n_nodes_; }
+  [[nodiscard]] std::vector<OwnBox> const& in_zone(int zone) const { return of_zone_[zone]; }
+
+ private:
+  std::vector<std::vector<OwnBox>> of_zone_;
+  Index n_nodes_ = 0;
+};
+
+/// Calls visit(place, slot) for all nodes of a copy or a sweep, whose slots these are.
+template <class Visit>
+void for_slots(Index first, Index stride_p, Index stride_q, int n_p, int n_q, Visit const& visit) {
+  for (int q = 0; q < n_q; ++q)
+    for (int p = 0; p < n_p; ++p) visit(std::size_t(first + p * stride_p + q * stride_q));
+}
+
+/// Appends entries begin ... begin + n of a list, zeros where it is shorter: what few chains need is not there for all.
+template <class T>
+void append_range(std::vector<T> const& from, Index begin, Index n, std::vector<T>& to) {
+  for (Index k = begin; k < begin + n; ++k) to.push_back(k < Index(from.size()) ? from[std::size_t(k)] : T{});
+}
+
+/// Which of the lists of one stage or pass are kept, and how they are numbered.
+struct KeptLines {
+  std::vector<char> sweeps, chains;  ///< nonzero: kept
+  std::vector<std::int32_t> number;  ///< of a chain, -1: it is not kept
+  std::vector<Index> end_shift;      ///< per chain: what its end values' numbers change by
+};
+
+/// The line parameters of those chains that are kept, measured on the whole mesh.
+std::vector<double> measured(HostInstance const& host, LineTables const& lines, std::vector<char> const& kept,
+                             Coordinates const& x) {
+  using Host = Kokkos::HostSpace;
+  std::vector<double> t(std::size_t(lines.n_parameters));
+  auto const measure = [&](auto const& exec) {
+    using Exec = std::decay_t<decltype(exec)>;
+    constexpr int width = kernels::TileShape<Exec>::lines;
+    std::vector<kernels::Tube> tubes;
+    std::vector<Index> first{0};
+    for (kernels::Tube const& tube : lines.tubes) {
+      if (kept[tube.chain] == 0 || !lines.chains[tube.chain].has_parameters()) continue;
+      tubes.push_back(tube);
+      first.push_back(first.back() + kernels::LineParameters<Host, width>::items(tube));
+    }
+    auto const table = host_lines(lines);
+    kernels::TileList<kernels::Tube, Host> list;
+    list.entries = Kokkos::View<kernels::Tube const*, Host>(tubes.data(), tubes.size());
+    list.first_item = Kokkos::View<Index const*, Host>(first.data(), first.size());
+    list.n_items = first.back();
+    kernels::line_parameters(
+        exec, table.chains, list, table.segments,
+        Kokkos::View<kernels::ParameterTarget const*, Host>(lines.targets.data(), lines.targets.size()),
+        kernels::Field<double const>{x.x.data(), x.y.data(), x.z.data()}, t.data());
+    compat::fence(exec, "gridmorph::share_of (line parameters are cut to boxes)");
+  };
+  host.visit(measure);
+  return t;
+}
+
+class Sharing {
+ public:
+  Sharing(HostInstance const& host, Plan const& whole, BoundaryMesh const& mesh, std::span<NodeBox const> boxes)
+      : host_(host),
+        whole_(whole),
+        mesh_(mesh),
+        own_(mesh, boxes),
+        cuts_of_(whole.boxes.size()),
+        needed_(std::size_t(whole.n_slots), 0) {}
+
+  Plan result() {
+    out_.n_nodes = own_.n_nodes();
+    out_.is_share = true;
+    copy_what_all_need();
+    cut_volume();
+    cut_skeleton_nodes();
+    keep_what_is_needed();
+    Index first = 0;  // of line parameters, where the whole plan has them
+    for (std::size_t n = 0; n < whole_.stages.size(); ++n)
+      out_.stages.push_back(share(whole_.stages[n], kept_[n], first));
+    for (std::size_t n = 0; n < whole_.spreads.size(); ++n)
+      out_.spreads.push_back(share(whole_.spreads[n], kept_[whole_.stages.size() + n], first));
+    return std::move(out_);
+  }
+
+ private:
+  /// A box of the volume within one of the share: its number there, and where it starts in the whole one.
+  struct Cut {
+    int box;
+    Index3 begin;
+  };
+
+  void copy_what_all_need() {
+    out_.boundary_nodes = whole_.boundary_nodes;
+    out_.boundary_slots = whole_.boundary_slots;
+    out_.boundary_projections = whole_.boundary_projections;
+    out_.turns = whole_.turns;
+    out_.common = whole_.common;
+    out_.law_knots = whole_.law_knots;
+    out_.surfaces = whole_.surfaces;
+    out_.rotations = whole_.rotations;
+    out_.n_slots = whole_.n_slots;
+    out_.mesh_size = whole_.mesh_size;
+  }
+
+  void cut_volume() {
+    for (std::size_t b = 0; b < whole_.boxes.size(); ++b) {
+      kernels::VolumeBox const& box = whole_.boxes[b];
+      int const z = mesh_.zone_of(box.first);
+      Index3 const at = mesh_.zones[z].index(box.first);
+      for (OwnBox const& own : own_.in_zone(z)) {
+        IndexRange const nodes = common(own.nodes, {at, {at[0] + box.n[0], at[1] + box.n[1], at[2] + box.n[2]}});
+        if (nodes.size() < 1) continue;
+        cuts_of_[b].push_back({int(out_.boxes.size()), minus(nodes.begin, at)});
+        kernels::VolumeBox part = box;
+        part.first = own.node(nodes.begin);
+        part.stride_j = own.strides()[1];
+        part.stride_k = own.strides()[2];
+        for (int d = 0; d < 3; ++d) part.n[d] = nodes.extent(d);
+        out_.boxes.push_back(part);
+      }
+    }
+  }
+
+  void cut_skeleton_nodes() {
+    for (kernels::NodeCopy const& copy : whole_.skeleton_nodes) {
+      int const z = mesh_.zone_of(copy.destination);
+      Zone const& zone = mesh_.zones[z];
+      Index3 const first = zone.index(copy.destination);
+      auto const along = [&](Index stride, int n) {
+        return n < 2 ? Index3{0, 0, 0} : minus(zone.index(copy.destination + stride), first);
+      };
+      Index3 const p_step = along(copy.destination_stride_p, copy.n_p),
+                   q_step = along(copy.destination_stride_q, copy.n_q);
+      for (OwnBox const& own : own_.in_zone(z)) {
+        int p[2] = {0, copy.n_p}, q[2] = {0, copy.n_q};
+        if (!limit(first, p_step, q_step, own.nodes, p, q)) continue;
+        kernels::NodeCopy part = copy;
+        part.source += p[0] * copy.source_stride_p + q[0] * copy.source_stride_q;
+        part.n_p = p[1] - p[0];
+        part.n_q = q[1] - q[0];
+        Index3 at = first;
+        for (int d = 0; d < 3; ++d) at[d] += p[0] * p_step[d] + q[0] * q_step[d];
+        auto const stride = own.strides();
+        part.destination = own.node(at);
+        part.destination_stride_p = part.destination_stride_q = 0;
+        for (int d = 0; d < 3; ++d) {
+          part.destination_stride_p += p_step[d] * stride[d];
+          part.destination_stride_q += q_step[d] * stride[d];
+        }
+        for_slots(part.source, part.source_stride_p, part.source_stride_q, part.n_p, part.n_q,
+                  [&](std::size_t slot) { needed_[slot] = 1; });
+        out_.skeleton_nodes.push_back(part);
+      }
+    }
+  }
+
+  /// Cuts the ranges of p and q to the nodes first + p p_step + q q_step within a box; false: none is. Steps are along
+  /// one axis each, of either sense, or zero where there is one node.
+  static bool limit(Index3 const& first, Index3 const& p_step, Index3 const& q_step, IndexRange const& box, int (&p)[2],
+                    int (&q)[2]) {
+    for (int d = 0; d < 3; ++d) {
+      if (p_step[d] == 0 && q_step[d] == 0) {
+        if (first[d] < box.begin[d] || first[d] >= box.end[d]) return false;
+        continue;
+      }
+      int const step = p_step[d] != 0 ? p_step[d] : q_step[d];
+      auto& range = p_step[d] != 0 ? p : q;
+      int const low = step > 0 ? box.begin[d] - first[d] : first[d] - box.end[d] + 1;
+      int const high = step > 0 ? box.end[d] - first[d] : first[d] - box.begin[d] + 1;
+      range[0] = std::max(range[0], low);
+      range[1] = std::min(range[1], high);
+    }
+    return p[0] < p[1] && q[0] < q[1];
+  }
+
+  /// From the last pass back to the first stage: sweeps that make a slot known that is needed, their chains and those
+  /// of the boxes, and what these chains read.
+  void keep_what_is_needed() {
+    kept_.resize(whole_.stages.size() + whole_.spreads.size());
+    for (std::size_t n = whole_.spreads.size(); n-- > 0;) {
+      SpreadPass const& pass = whole_.spreads[n];
+      KeptLines& kept = kept_[whole_.stages.size() + n];
+      keep_chains(pass, kept);
+      for (kernels::SlipEnd const& end : pass.ends)
+        if (is_kept(pass.lines, kept, end.value)) needed_[std::size_t(end.slot)] = 1;
+    }
+    for (std::size_t n = whole_.stages.size(); n-- > 0;) {
+      Stage const& stage = whole_.stages[n];
+      KeptLines& kept = kept_[n];
+      keep_chains(stage, kept);
+      auto const need = [&](kernels::NodeCopy const& copy) {
+        for_slots(copy.source, copy.source_stride_p, copy.source_stride_q, copy.n_p, copy.n_q,
+                  [&](std::size_t slot) { needed_[slot] = 1; });
+      };
+      for (kernels::NodeCopy const& copy : stage.ends)
+        if (is_kept(stage.lines, kept, copy.destination)) need(copy);
+      for (kernels::NodeCopy const& copy : stage.sides.gathers)
+        if (kept.chains[chain_of_side_node(stage.sides, copy.destination)] != 0) need(copy);
+    }
+  }
+
+  template <class StageOrPass>
+  void keep_chains(StageOrPass const& stage, KeptLines& kept) {
+    kept.chains.assign(stage.lines.chains.size(), 0);
+    kept.sweeps.assign(stage.sweeps.size(), 0);
+    for (VolumePart const& part : stage.volume)
+      if (!cuts_of_[part.box].empty()) kept.chains[part.term.chain] = 1;
+    for (std::size_t n = 0; n < stage.sweeps.size(); ++n) {
+      kernels::SkeletonSweep const& sweep = stage.sweeps[n];
+      for_slots(sweep.slot, 1, sweep.slot_q, sweep.n_p, sweep.n_q, [&](std::size_t slot) {
+        if (needed_[slot] == 0) return;
+        kept.sweeps[n] = 1;
+        kept.chains[sweep.chain] = 1;
+      });
+    }
+    std::int32_t number = 0;
+    Index first = 0;
+    for (std::size_t c = 0; c < kept.chains.size(); ++c) {
+      kernels::Chain const& chain = stage.lines.chains[c];
+      kept.number.push_back(kept.chains[c] != 0 ? number++ : -1);
+      kept.end_shift.push_back(first - chain.first_end_value);
+      if (kept.chains[c] != 0) first += 2 * chain.section_size();
+    }
+  }
+
+  /// The chain that an end value is of: their end values follow one another.
+  static std::size_t chain_of_end(LineTables const& lines, Index value) {
+    auto const after = std::upper_bound(lines.chains.begin(), lines.chains.end(), value,
+                                        [](Index v, kernels::Chain const& c) { return v < c.first_end_value; });
+    return std::size_t(after - lines.chains.begin()) - 1;
+  }
+  static bool is_kept(LineTables const& lines, KeptLines const& kept, Index value) {
+    return kept.chains[chain_of_end(lines, value)] != 0;
+  }
+  static std::size_t side_of_node(SideTables const& sides, Index node) {
+    auto const after = std::upper_bound(sides.sides.begin(), sides.sides.end(), node,
+                                        [](Index n, kernels::Side const& s) { return n < s.first; });
+    return std::size_t(after - sides.sides.begin()) - 1;
+  }
+  static std::size_t chain_of_side_node(SideTables const& sides, Index node) {
+    return std::size_t(sides.sides[side_of_node(sides, node)].chain);
+  }
+
+  /// Line parameters of a stage of the whole plan, which begin at `first` where it has them all.
+  std::vector<double> parameters(LineTables const& lines, KeptLines const& kept, Index& first) const {
+    Index const begin = std::exchange(first, first + lines.n_parameters);
+    if (whole_.line_parameters.empty()) return measured(host_, lines, kept.chains, mesh_.coordinates);
+    return {whole_.line_parameters.begin() + begin, whole_.line_parameters.begin() + first};
+  }
+
+  /// Appends those of n[0] x n[1] x n[2] nodes, i fastest; returns the number of the first among those of the stage.
+  static Index append_parameters(std::vector<double> const& from, Index first, std::array<Index, 3> const& stride,
+                                 Index3 const& n, std::vector<double>& to) {
+    Index const begin = Index(to.size());
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        for (int i = 0; i < n[0]; ++i)
+          to.push_back(from[std::size_t(first + i * stride[0] + j * stride[1] + k * stride[2])]);
+    return begin;
+  }
+
+  /// Chains with their end values, sweeps and parts of the volume: what stages and passes have in common.
+  template <class StageOrPass>
+  void share_lines(StageOrPass const& from, KeptLines const& kept, Index& first_parameter, StageOrPass& to) {
+    std::vector<double> const t = parameters(from.lines, kept, first_parameter);
+    std::vector<double> own;
+    for (std::size_t c = 0; c < kept.chains.size(); ++c) {
+      if (kept.chains[c] == 0) continue;
+      kernels::Chain chain = from.lines.chains[c];
+      Index const n_values = 2 * chain.section_size();
+      if (!from.lines.end_positions.empty()) {
+        append_range(from.lines.end_positions, chain.first_end_value, n_values, to.lines.end_positions);
+        append_range(from.lines.end_pivots, chain.first_end_value, n_values, to.lines.end_pivots);
+      }
+      chain.first_end_value += kept.end_shift[c];
+      to.lines.n_end_values += n_values;
+      to.lines.chains.push_back(chain);
+    }
+    for (std::size_t n = 0; n < from.sweeps.size(); ++n) {
+      if (kept.sweeps[n] == 0) continue;
+      kernels::SkeletonSweep sweep = from.sweeps[n];
+      if (sweep.t >= 0) {
+        sweep.t = append_parameters(t, sweep.t, {sweep.t_p, sweep.t_q, 0}, {sweep.n_p, sweep.n_q, 1}, own);
+        sweep.t_p = 1;
+        sweep.t_q = sweep.n_p;
+      }
+      if (sweep.x >= 0) {
+        Index const begin = std::exchange(sweep.x, Index(to.lines.swept_positions.size()));
+        append_range(from.lines.swept_positions, begin, Index(sweep.n_p) * sweep.n_q, to.lines.swept_positions);
+      }
+      sweep.chain = kept.number[sweep.chain];
+      to.sweeps.push_back(sweep);
+    }
+    for (VolumePart const& part : from.volume)
+      for (Cut const& cut : cuts_of_[part.box]) to.volume.push_back(share(part, cut, kept, t, own));
+    to.lines.n_parameters = Index(own.size());
+    out_.line_parameters.insert(out_.line_parameters.end(), own.begin(), own.end());
+  }
+
+  VolumePart share(VolumePart const& part, Cut const& cut, KeptLines const& kept, std::vector<double> const& t,
+                   std::vector<double>& own) const {
+    kernels::VolumeBox const &whole = whole_.boxes[part.box], &box = out_.boxes[cut.box];
+    VolumePart out{cut.box, part.term};
+    kernels::VolumeTerm& term = out.term;
+    term.end_value += kept.end_shift[term.chain];
+    term.chain = kept.number[term.chain];
+    for (int d = 0; d < 3; ++d) {
+      term.end_value += cut.begin[d] * term.end_stride[d];
+      for (auto* const place : {&term.s, &term.a, &term.b}) (*place)[0] += cut.begin[d] * (*place)[1 + d];
+    }
+    if (term.t >= 0) {
+      std::array<Index, 3> const stride{1, whole.n[0], Index(whole.n[0]) * whole.n[1]};
+      Index const first = term.t + cut.begin[0] + cut.begin[1] * stride[1] + cut.begin[2] * stride[2];
+      term.t = append_parameters(t, first, stride, {box.n[0], box.n[1], box.n[2]}, own);
+    }
+    return out;
+  }
+
+  Stage share(Stage const& from, KeptLines const& kept, Index& first_parameter) {
+    Stage to;
+    to.name = from.name;
+    to.turns = from.turns;
+    share_lines(from, kept, first_parameter, to);
+    share_sides(from, kept, to);
+    for (kernels::NodeCopy copy : from.ends)
+      if (std::size_t const c = chain_of_end(from.lines, copy.destination); kept.chains[c] != 0) {
+        copy.destination += kept.end_shift[c];
+        to.ends.push_back(copy);
+      }
+    for (kernels::NearFieldLine line : from.near_field)
+      if (std::size_t const c = chain_of_end(from.lines, line.lower); kept.chains[c] != 0) {
+        line.lower += kept.end_shift[c];
+        line.upper += kept.end_shift[c];
+        to.near_field.push_back(line);
+      }
+    return to;
+  }
+
+  /// The tables of known sides of the chains that are kept.
+  static void share_sides(Stage const& from, KeptLines const& kept, Stage& to) {
+    SideTables const& all = from.sides;
+    std::vector<std::int32_t> side_number(all.sides.size(), -1);
+    std::vector<Index> node_shift(all.sides.size(), 0);
+    for (std::size_t c = 0; c < kept.chains.size(); ++c) {
+      kernels::Chain const& whole = from.lines.chains[c];
+      if (kept.chains[c] == 0 || whole.first_side < 0) continue;
+      kernels::Chain& chain = to.lines.chains[kept.number[c]];
+      chain.first_side = std::int32_t(to.sides.sides.size());
+      chain.first_junction = std::int32_t(to.sides.junctions.size());
+      chain.first_section = Index(to.sides.section.size());
+      append_range(all.junctions, whole.first_junction, whole.n_blocks + 1, to.sides.junctions);
+      append_range(all.section, whole.first_section, 4 * whole.section_size(), to.sides.section);
+      for (int q = 0; q < 4; ++q) {
+        std::size_t const number = std::size_t(whole.first_side + q);
+        kernels::Side side = all.sides[number];
+        Index const n = Index(whole.n_s) * side.n_w;
+        side_number[number] = std::int32_t(to.sides.sides.size());
+        node_shift[number] = Index(to.sides.t.size()) - side.first;
+        append_range(all.t, side.first, n, to.sides.t);
+        if (!all.positions.empty()) append_range(all.positions, side.first, n, to.sides.positions);
+        side.first += node_shift[number];
+        side.chain = kept.number[c];
+        to.sides.sides.push_back(side);
+      }
+    }
+    for (kernels::SideLine line : all.lines)
+      if (side_number[line.side] >= 0) {
+        line.side = side_number[line.side];
+        to.sides.lines.push_back(line);
+      }
+    for (std::int32_t const chain : all.corrected)
+      if (kept.chains[chain] != 0) to.sides.corrected.push_back(kept.number[chain]);
+    for (kernels::NodeCopy copy : all.gathers)
+      if (std::size_t const side = side_of_node(all, copy.destination); side_number[side] >= 0) {
+        copy.destination += node_shift[side];
+        to.sides.gathers.push_back(copy);
+      }
+  }
+
+  SpreadPass share(SpreadPass const& from, KeptLines const& kept, Index& first_parameter) {
+    SpreadPass to;
+    share_lines(from, kept, first_parameter, to);
+    for (kernels::SlipEnd end : from.ends)
+      if (std::size_t const c = chain_of_end(from.lines, end.value); kept.chains[c] != 0) {
+        end.value += kept.end_shift[c];
+        to.positions.push_back(mesh_.coordinates[end.node]);
+        to.ends.push_back(end);
+      }
+    return to;
+  }
+
+  HostInstance const& host_;
+  Plan const& whole_;
+  BoundaryMesh const& mesh_;
+  OwnBoxes own_;
+  std::vector<std::vector<Cut>> cuts_of_;  ///< per box of the whole plan
+  std::vector<char> needed_;               ///< per slot
+  std::vector<KeptLines> kept_;            ///< per stage, then per pass
+  Plan out_;
+};
+
+}  // namespace
+
+Plan share_of(HostInstance const& host, Plan const& whole, BoundaryMesh const& mesh, std::span<NodeBox const> boxes) {
+  return Sharing(host, whole, mesh, boxes).result();
+}
+
+}  // namespace gridmorph

@@ -1,0 +1,159 @@
+// Shares of plans: what they leave out, what a Morpher of one serves, what is refused. That nodes go to the same bits
+// is an invariant of all cases.
+#include <gridmorph/core/error.hpp>
+#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/plan/share.hpp>
+
+#include "support/expect_error.hpp"
+#include "support/morph_run.hpp"
+#include "support/motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace gridmorph::test {
+namespace {
+
+using Exec = Kokkos::DefaultHostExecutionSpace;
+using In = Morpher<Exec>::In;
+using Out = Morpher<Exec>::Out;
+
+/// Zones side by side along w, each between the wall u_min, which moves, and u_max, which stands.
+Mesh side_by_side(int n) {
+  Bricks bricks{"side by side", {7, 4, 4 * n + 1}, {}, [](Vec3 const& p) { return Vec3{2 * p.x, p.y, 5 * p.z}; }};
+  for (int z = 0; z < n; ++z) bricks.zones.push_back({{0, 0, 4 * z}, {7, 4, 4 * z + 5}});
+  return make(bricks);
+}
+
+Motion wall_moves() {
+  return motion({rule({"u_min"}, function_rule(waves(0.1))), rule({"u_max"}, FixedRule{}),
+                 rule({"v_min", "v_max", "w_min", "w_max"}, FreeRule{})});
+}
+
+std::vector<NodeBox> zones(Mesh const& mesh, std::vector<int> const& numbers) {
+  std::vector<NodeBox> out;
+  for (int const z : numbers) out.push_back({z, whole(mesh.zones[z])});
+  return out;
+}
+
+/// Nodes of the skeleton that are swept, line parameters, values at ends of lines.
+std::array<Index, 3> work(Plan const& plan) {
+  std::array<Index, 3> out{};
+  for (Stage const& stage : plan.stages) {
+    for (kernels::SkeletonSweep const& sweep : stage.sweeps) out[0] += Index(sweep.n_p) * sweep.n_q;
+    out[1] += stage.lines.n_parameters;
+    out[2] += stage.lines.n_end_values;
+  }
+  return out;
+}
+
+TEST(Share, OfAllIsThePlanAndOfAFewZonesTheirPartOfIt) {
+  Mesh const mesh = side_by_side(8);
+  PreparedMorph const prepared = prepare(mesh, wall_moves(), without_near_field());
+  auto const all = work(prepared.plan());
+  EXPECT_EQ(work(share_of({}, prepared.plan(), mesh, zones(mesh, {0, 1, 2, 3, 4, 5, 6, 7}))), all);
+  // The zones are one block to chains: its ends are read as a whole, and what is swept is that of one zone.
+  auto const some = work(share_of({}, prepared.plan(), mesh, zones(mesh, {3})));
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_GT(some[k], 0);
+    EXPECT_LT(some[k], all[k] / 2);
+  }
+  EXPECT_EQ(some[2], all[2]);
+  EXPECT_EQ(work(share_of({}, prepared.plan(), mesh, {})), (std::array<Index, 3>{}));
+}
+
+TEST(Share, HasTheChainsThatItsNodesDependOnAlone) {
+  Mesh const mesh = around_a_box(2);
+  PreparedMorph const prepared =
+      prepare(mesh, motion({rule({"step"}, function_rule(waves(0.02))), rule({"u_*", "v_*", "w_*"}, FixedRule{})}),
+              without_near_field());
+  auto const all = work(prepared.plan());
+  std::array<Index, 3> fewest = all;
+  for (int z = 0; z < int(mesh.zones.size()); ++z) {
+    auto const some = work(share_of({}, prepared.plan(), mesh, zones(mesh, {z})));
+    for (int k = 0; k < 3; ++k) fewest[k] = std::min(fewest[k], some[k]);
+  }
+  for (int k = 0; k < 3; ++k) EXPECT_LT(fewest[k], all[k]);
+}
+
+TEST(Share, ServesArraysOfAnyKindSeveralFieldsAndVelocities) {
+  Mesh const mesh = side_by_side(4);
+  MorphPlan const plan(mesh, wall_moves());
+  auto const boxes = zones(mesh, {2, 0});
+  MorphPlan const share = plan.share({}, mesh, boxes);
+  ASSERT_EQ(share.n_nodes(), mesh.zones[2].size() + mesh.zones[0].size());
+  EXPECT_EQ(share.boundary_nodes(), plan.boundary_nodes());
+  EXPECT_EQ(share.boundary_displacement(), plan.boundary_displacement());
+
+  using Floats = Kokkos::View<float* [3], Kokkos::LayoutRight, Kokkos::HostSpace>;
+  using Doubles = Kokkos::View<double* [3], Kokkos::LayoutLeft, Kokkos::HostSpace>;
+  Floats const x("x", mesh.n_nodes()), own_x("own_x", share.n_nodes());
+  Mesh rounded = mesh;  // the plan is of the coordinates that the program has
+  rounded.coordinates = Coordinates(mesh.n_nodes());
+  Index own = 0;
+  std::vector<Index> node_of;
+  for (int const z : {2, 0})
+    for (Index n = 0; n < mesh.zones[z].size(); ++n) node_of.push_back(mesh.zones[z].first_node + n);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    Vec3 const p = mesh.coordinates[n];
+    x(n, 0) = float(p.x), x(n, 1) = float(p.y), x(n, 2) = float(p.z);
+    rounded.coordinates.set(n, {x(n, 0), x(n, 1), x(n, 2)});
+  }
+  for (Index const n : node_of) {
+    for (int c = 0; c < 3; ++c) own_x(own, c) = x(n, c);
+    ++own;
+  }
+  MorphPlan const of_floats(rounded, wall_moves());
+  Exec const exec;
+  Morpher<Exec> const morpher(exec, of_floats, x, {.fields = 2, .velocity = true});
+  Morpher<Exec> const part(exec, of_floats.share({}, rounded, boxes), own_x, {.fields = 2, .velocity = true});
+  auto b = of_floats.boundary_displacement();
+  std::vector<Vec3> twice;
+  for (Vec3 const& u : b) twice.push_back(2 * u);
+  Kokkos::View<Vec3*, Kokkos::HostSpace> const given(b.data(), b.size()), other(twice.data(), twice.size());
+  Doubles const u("u", mesh.n_nodes()), v("v", mesh.n_nodes()), own_u("own_u", own), own_v("own_v", own);
+  auto const expect_same = [&](auto const& mine, auto const& all, char const* what) {
+    exec.fence();
+    for (Index n = 0; n < own; ++n)
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(mine(n, c), all(node_of[n], c)) << what << ' ' << n;
+  };
+  std::vector<In> const both{given, other};
+  morpher.displacements(exec, both, std::vector<Out>{u, v});
+  part.displacements(exec, both, std::vector<Out>{own_u, own_v});
+  expect_same(own_u, u, "displacement");
+  expect_same(own_v, v, "twice the displacement");
+  morpher.velocities(exec, given, other, v);
+  part.velocities(exec, given, other, own_v);
+  expect_same(own_v, v, "velocity");
+  morpher.positions(exec, given, x);
+  part.positions(exec, given, own_x);
+  expect_same(own_x, x, "position");
+}
+
+TEST(Share, RefusesWhatItCannotBe) {
+  Mesh const mesh = side_by_side(3);
+  MorphPlan const plan(mesh, wall_moves());
+  auto const share = [&](std::vector<NodeBox> const& boxes) { return plan.share({}, mesh, boxes); };
+  expect_all_in(message_of<ConfigError>([&] { share({{3, whole(mesh.zones[0])}}); }), {"zone 3", "3 zones"});
+  expect_all_in(message_of<ConfigError>([&] { share({{-1, whole(mesh.zones[0])}}); }), {"zone -1"});
+  for (IndexRange const& nodes : {IndexRange{{0, 0, 0}, {8, 4, 5}}, IndexRange{{-1, 0, 0}, {7, 4, 5}},
+                                  IndexRange{{0, 2, 0}, {7, 2, 5}}, IndexRange{{0, 3, 0}, {7, 1, 5}}})
+    expect_all_in(message_of<ConfigError>([&] {
+                    share({{1, nodes}});
+                  }),
+                  {to_string(nodes), mesh.zones[1].name, "[1:7, 1:4, 1:5]"});
+  Mesh other = side_by_side(2);
+  expect_all_in(message_of<ConfigError>([&] { (void)plan.share({}, other, {}); }),
+                {"mesh of 420 nodes", "this one has 280"});
+  MorphPlan const first = share(zones(mesh, {0}));
+  expect_all_in(message_of<ConfigError>([&] { (void)first.share({}, mesh, {}); }), {"share already"});
+  Kokkos::View<double* [3], Kokkos::HostSpace> const x("x", first.n_nodes());
+  expect_all_in(message_of<ConfigError>([&] { Morpher<Exec>(Exec(), first, x, {.transpose = true}); }),
+                {"share", "transpose", "whole plan"});
+}
+
+}  // namespace
+}  // namespace gridmorph::test
