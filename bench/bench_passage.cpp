@@ -8,6 +8,8 @@
 //   displace_4  four displacement fields at once                  96 bytes per node, 8 per line parameter
 //   rotate      apply with a near field that turns with the blade   48 bytes per node, 8 per line parameter
 //   rotate_to_the_end  its turn handed on to all chains from it      the same
+//   apply_share_4, apply_share_16  apply of one process of so many, that with the most nodes (docs/mpi.md); "swept":
+//               nodes of the skeleton that all of them sweep, over those of one process alone
 //   transpose   gradients of nodes handed back to the boundary       24 bytes per node, 8 per line parameter
 //   transpose_rotate, transpose_rotate_to_the_end: of rotate and rotate_to_the_end
 //
@@ -20,10 +22,13 @@
 
 #include <generators/passage.hpp>
 #include <generators/passage_motion.hpp>
+#include <gridmorph/mesh/deal_zones.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/prepare.hpp>
+#include <gridmorph/plan/share.hpp>
 
 #include <optional>
+#include <utility>
 
 namespace gridmorph::bench {
 namespace {
@@ -86,11 +91,11 @@ template <class ExecutionSpace>
 struct OnDevice : NodeArrays<typename ExecutionSpace::memory_space> {
   Kokkos::View<Vec3*, typename ExecutionSpace::memory_space> boundary;
 
-  OnDevice(ExecutionSpace const& exec, Passage const& p)
-      : NodeArrays<typename ExecutionSpace::memory_space>(p.mesh.coordinates),
-        boundary("gridmorph::bench::boundary", p.boundary.size()) {
-    Kokkos::View<Vec3 const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const host(p.boundary.data(),
-                                                                                                     p.boundary.size());
+  OnDevice(ExecutionSpace const& exec, Passage const& p) : OnDevice(exec, p.mesh.coordinates, p.boundary) {}
+  OnDevice(ExecutionSpace const& exec, Coordinates const& x, std::vector<Vec3> const& given)
+      : NodeArrays<typename ExecutionSpace::memory_space>(x), boundary("gridmorph::bench::boundary", given.size()) {
+    Kokkos::View<Vec3 const*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> const host(given.data(),
+                                                                                                     given.size());
     Kokkos::deep_copy(boundary, host);
     compat::fence(exec, "gridmorph::bench (passage is ready)");
   }
@@ -112,6 +117,50 @@ struct OnPassage {
     auto const step = work(exec, p, mesh);
     double const mean = time_iterations(state, exec, step);
     set_shares(state, exec, mean, p.mesh.n_nodes(), fixed_bytes + bytes_per_parameter * p.parameters_per_node());
+  }
+};
+
+Index nodes_swept(Plan const& plan) {
+  Index n = 0;
+  for (Stage const& stage : plan.stages)
+    for (kernels::SkeletonSweep const& sweep : stage.sweeps) n += Index(sweep.n_p) * sweep.n_q;
+  for (SpreadPass const& pass : plan.spreads)
+    for (kernels::SkeletonSweep const& sweep : pass.sweeps) n += Index(sweep.n_p) * sweep.n_q;
+  return n;
+}
+
+/// What the process of several that has most nodes does for its apply.
+struct ApplyOfShare {
+  int processes;
+
+  template <class ExecutionSpace>
+  void operator()(ExecutionSpace const& exec, benchmark::State& state) const {
+    Passage const& p = passage({state.range(0), 0.0});
+    Plan largest;
+    std::vector<NodeBox> own;
+    Index swept = 0;
+    for (auto const& boxes : deal_zones(p.mesh, processes)) {
+      Plan share = share_of(host_instance(exec), p.prepared.plan(), p.mesh, boxes);
+      swept += nodes_swept(share);
+      if (share.n_nodes <= largest.n_nodes) continue;
+      largest = std::move(share);
+      own = boxes;
+    }
+    Coordinates x(largest.n_nodes);
+    Index n = 0;
+    for (auto const& [zone, nodes] : own)
+      for (int k = nodes.begin[2]; k < nodes.end[2]; ++k)
+        for (int j = nodes.begin[1]; j < nodes.end[1]; ++j)
+          for (int i = nodes.begin[0]; i < nodes.end[0]; ++i)
+            x.set(n++, p.mesh.coordinates[p.mesh.zones[zone].node({i, j, k})]);
+    OnDevice<ExecutionSpace> const mesh(exec, x, p.boundary);
+    auto const morpher = MorpherAccess::of(exec, largest, mesh);
+    double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, mesh.boundary, mesh); });
+    Index n_parameters = 0;
+    for (Stage const& stage : largest.stages) n_parameters += stage.lines.n_parameters;
+    for (SpreadPass const& pass : largest.spreads) n_parameters += pass.lines.n_parameters;
+    set_shares(state, exec, mean, n, 48 + 8 * double(n_parameters) / double(n));
+    state.counters["swept"] = double(swept) / double(nodes_swept(p.prepared.plan()));
   }
 };
 
@@ -140,6 +189,8 @@ void register_all() {
   add("apply", 48, 8, apply);
   add("rotate", 48, 8, apply, 0.0);
   add("rotate_to_the_end", 48, 8, apply, 0.25);
+  for (int const processes : {4, 16})
+    register_benchmark("passage/apply_share_" + std::to_string(processes), ApplyOfShare{processes}, passage_sizes);
   auto const transpose = [](auto const& exec, Passage const& p, auto const& mesh) {
     using Exec = std::decay_t<decltype(exec)>;
     auto const morpher = MorpherAccess::of(exec, p.prepared.plan(), mesh, {.transpose = true});

@@ -4,6 +4,8 @@
 #include <gridmorph/plan/share.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -74,15 +76,118 @@ void append_range(std::vector<T> const& from, Index begin, Index n, std::vector<
   for (Index k = begin; k < begin + n; ++k) to.push_back(k < Index(from.size()) ? from[std::size_t(k)] : T{});
 }
 
-/// Which of the lists of one stage or pass are kept, and how they are numbered.
-struct KeptLines {
-  std::vector<char> sweeps, chains;  ///< nonzero: kept
-  std::vector<std::int32_t> number;  ///< of a chain, -1: it is not kept
-  std::vector<Index> end_shift;      ///< per chain: what its end values' numbers change by
+/// First and one past the last of what is needed; nothing as long as nothing is included.
+struct Range {
+  int begin = std::numeric_limits<int>::max(), end = std::numeric_limits<int>::min();
+
+  void include(int n) {
+    begin = std::min(begin, n);
+    end = std::max(end, n + 1);
+  }
+  [[nodiscard]] bool any() const { return begin < end; }
+  [[nodiscard]] bool has(int n) const { return begin <= n && n < end; }
+  [[nodiscard]] int size() const { return any() ? end - begin : 0; }
 };
 
+/// The lines (a, b) of a chain that are kept, and where their end values start.
+struct KeptChain {
+  std::int32_t number = -1;  ///< in the share, -1: none is kept
+  Range a, b;
+  Index first_end_value = 0;
+
+  [[nodiscard]] bool any() const { return a.any(); }
+  void include(int line_a, int line_b) {
+    a.include(line_a);
+    b.include(line_b);
+  }
+};
+
+/// The nodes (p, q) of a sweep that are needed.
+struct KeptRows {
+  Range p, q;
+};
+
+/// What is kept of the lines of one stage or pass.
+class KeptLines {
+ public:
+  std::vector<KeptChain> chains;
+  std::vector<KeptRows> sweeps;
+
+  explicit KeptLines(LineTables const& lines) : chains(lines.chains.size()), lines_(&lines) {}
+
+  /// Where an end value stands: end values of chains follow one another.
+  struct Place {
+    std::size_t chain;
+    int end, a, b;
+  };
+  [[nodiscard]] Place place(Index value) const {
+    auto const after = std::upper_bound(lines_->chains.begin(), lines_->chains.end(), value,
+                                        [](Index v, kernels::Chain const& c) { return v < c.first_end_value; });
+    auto const c = std::size_t(after - lines_->chains.begin()) - 1;
+    kernels::Chain const& chain = lines_->chains[c];
+    Index const local = value - chain.first_end_value, line = local % chain.section_size();
+    return {c, int(local / chain.section_size()), int(line % chain.n_a), int(line / chain.n_a)};
+  }
+  [[nodiscard]] bool has(Index value) const {
+    Place const at = place(value);
+    return chains[at.chain].a.has(at.a) && chains[at.chain].b.has(at.b);
+  }
+  /// The number of an end value in the share.
+  [[nodiscard]] Index number(Index value) const {
+    Place const at = place(value);
+    KeptChain const& kept = chains[at.chain];
+    return kept.first_end_value + at.a - kept.a.begin +
+           Index(kept.a.size()) * (at.b - kept.b.begin + Index(kept.b.size()) * at.end);
+  }
+  /// What a step between end values of a chain becomes; 0 where it is not made.
+  [[nodiscard]] Index step(Index value, Index by, int n) const {
+    return n < 2 || by == 0 ? 0 : number(value + by) - number(value);
+  }
+  /// Numbers the chains that are kept, and their end values.
+  void number_chains() {
+    std::int32_t n = 0;
+    Index first = 0;
+    for (KeptChain& chain : chains) {
+      if (!chain.any()) continue;
+      chain.number = n++;
+      chain.first_end_value = first;
+      first += 2 * Index(chain.a.size()) * chain.b.size();
+    }
+  }
+
+ private:
+  LineTables const* lines_;
+};
+
+/// The part of a copy to end values of lines that are kept; none where it has no nodes.
+std::optional<kernels::NodeCopy> cut(kernels::NodeCopy copy, KeptLines const& kept) {
+  Range p, q;
+  for (int m = 0; m < copy.n_q; ++m)
+    for (int n = 0; n < copy.n_p; ++n)
+      if (kept.has(copy.destination + n * copy.destination_stride_p + m * copy.destination_stride_q)) {
+        p.include(n);
+        q.include(m);
+      }
+  if (!p.any()) return {};
+  copy.source += p.begin * copy.source_stride_p + q.begin * copy.source_stride_q;
+  Index const first = copy.destination + p.begin * copy.destination_stride_p + q.begin * copy.destination_stride_q;
+  copy.n_p = p.size();
+  copy.n_q = q.size();
+  copy.destination = first;
+  return copy;
+}
+
+/// The same with the numbers of the share.
+kernels::NodeCopy renumbered(kernels::NodeCopy copy, KeptLines const& kept) {
+  Index const first = copy.destination;
+  copy.destination = kept.number(first);
+  copy.destination_stride_p = kept.step(first, copy.destination_stride_p, copy.n_p);
+  copy.destination_stride_q = kept.step(first, copy.destination_stride_q, copy.n_q);
+  return copy;
+}
+
 /// The line parameters of those chains that are kept, measured on the whole mesh.
-std::vector<double> measured(HostInstance const& host, LineTables const& lines, std::vector<char> const& kept,
+std::vector<double> measured(HostInstance const& host, LineTables const& lines, std::vector<KeptChain> const& kept,
                              Coordinates const& x) {
   using Host = Kokkos::HostSpace;
   std::vector<double> t(std::size_t(lines.n_parameters));
@@ -92,7 +197,7 @@ std::vector<double> measured(HostInstance const& host, LineTables const& lines, 
     std::vector<kernels::Tube> tubes;
     std::vector<Index> first{0};
     for (kernels::Tube const& tube : lines.tubes) {
-      if (kept[tube.chain] == 0 || !lines.chains[tube.chain].has_parameters()) continue;
+      if (!kept[tube.chain].any() || !lines.chains[tube.chain].has_parameters()) continue;
       tubes.push_back(tube);
       first.push_back(first.back() + kernels::LineParameters<Host, width>::items(tube));
     }
@@ -133,6 +238,8 @@ class Sharing {
       out_.stages.push_back(share(whole_.stages[n], kept_[n], first));
     for (std::size_t n = 0; n < whole_.spreads.size(); ++n)
       out_.spreads.push_back(share(whole_.spreads[n], kept_[whole_.stages.size() + n], first));
+    if (std::none_of(out_.stages.begin(), out_.stages.end(), [](Stage const& stage) { return stage.turns; }))
+      out_.turns = {};
     return std::move(out_);
   }
 
@@ -227,65 +334,74 @@ class Sharing {
     return p[0] < p[1] && q[0] < q[1];
   }
 
-  /// From the last pass back to the first stage: sweeps that make a slot known that is needed, their chains and those
-  /// of the boxes, and what these chains read.
+  /// From the last pass back to the first stage: rows that make a slot known that is needed, the lines that these and
+  /// the boxes read, and what the ends of these lines are.
   void keep_what_is_needed() {
-    kept_.resize(whole_.stages.size() + whole_.spreads.size());
+    for (Stage const& stage : whole_.stages) kept_.emplace_back(stage.lines);
+    for (SpreadPass const& pass : whole_.spreads) kept_.emplace_back(pass.lines);
     for (std::size_t n = whole_.spreads.size(); n-- > 0;) {
       SpreadPass const& pass = whole_.spreads[n];
       KeptLines& kept = kept_[whole_.stages.size() + n];
-      keep_chains(pass, kept);
+      keep_lines(pass, kept);
       for (kernels::SlipEnd const& end : pass.ends)
-        if (is_kept(pass.lines, kept, end.value)) needed_[std::size_t(end.slot)] = 1;
+        if (kept.has(end.value)) needed_[std::size_t(end.slot)] = 1;
     }
     for (std::size_t n = whole_.stages.size(); n-- > 0;) {
       Stage const& stage = whole_.stages[n];
       KeptLines& kept = kept_[n];
-      keep_chains(stage, kept);
-      auto const need = [&](kernels::NodeCopy const& copy) {
-        for_slots(copy.source, copy.source_stride_p, copy.source_stride_q, copy.n_p, copy.n_q,
-                  [&](std::size_t slot) { needed_[slot] = 1; });
-      };
+      keep_lines(stage, kept);
       for (kernels::NodeCopy const& copy : stage.ends)
-        if (is_kept(stage.lines, kept, copy.destination)) need(copy);
+        if (auto const part = cut(copy, kept)) need(*part);
       for (kernels::NodeCopy const& copy : stage.sides.gathers)
-        if (kept.chains[chain_of_side_node(stage.sides, copy.destination)] != 0) need(copy);
+        if (kept.chains[chain_of_side_node(stage.sides, copy.destination)].any()) need(copy);
     }
+  }
+  void need(kernels::NodeCopy const& copy) {
+    for_slots(copy.source, copy.source_stride_p, copy.source_stride_q, copy.n_p, copy.n_q,
+              [&](std::size_t slot) { needed_[slot] = 1; });
   }
 
   template <class StageOrPass>
-  void keep_chains(StageOrPass const& stage, KeptLines& kept) {
-    kept.chains.assign(stage.lines.chains.size(), 0);
-    kept.sweeps.assign(stage.sweeps.size(), 0);
+  void keep_lines(StageOrPass const& stage, KeptLines& kept) const {
     for (VolumePart const& part : stage.volume)
-      if (!cuts_of_[part.box].empty()) kept.chains[part.term.chain] = 1;
+      for (Cut const& box : cuts_of_[part.box]) {
+        kernels::VolumeTerm const& term = part.term;
+        for (int const corner : {0, 7}) {  // of the box: lines are along its axes
+          Index a = term.a[0], b = term.b[0];
+          for (int d = 0; d < 3; ++d) {
+            int const at = box.begin[d] + (corner >> d & 1) * (out_.boxes[box.box].n[d] - 1);
+            a += at * term.a[1 + d];
+            b += at * term.b[1 + d];
+          }
+          kept.chains[term.chain].include(int(a), int(b));
+        }
+      }
+    kept.sweeps.resize(stage.sweeps.size());
     for (std::size_t n = 0; n < stage.sweeps.size(); ++n) {
       kernels::SkeletonSweep const& sweep = stage.sweeps[n];
-      for_slots(sweep.slot, 1, sweep.slot_q, sweep.n_p, sweep.n_q, [&](std::size_t slot) {
-        if (needed_[slot] == 0) return;
-        kept.sweeps[n] = 1;
-        kept.chains[sweep.chain] = 1;
-      });
+      auto& [p, q] = kept.sweeps[n];
+      for (int m = 0; m < sweep.n_q; ++m)
+        for (int k = 0; k < sweep.n_p; ++k)
+          if (needed_[std::size_t(sweep.slot + k + m * sweep.slot_q)] != 0) {
+            p.include(k);
+            q.include(m);
+          }
+      if (!p.any()) continue;
+      for (int const k : {p.begin, p.end - 1})
+        for (int const m : {q.begin, q.end - 1})
+          kept.chains[sweep.chain].include(sweep.a[0] + k * sweep.a[1] + m * sweep.a[2],
+                                           sweep.b[0] + k * sweep.b[1] + m * sweep.b[2]);
     }
-    std::int32_t number = 0;
-    Index first = 0;
     for (std::size_t c = 0; c < kept.chains.size(); ++c) {
       kernels::Chain const& chain = stage.lines.chains[c];
-      kept.number.push_back(kept.chains[c] != 0 ? number++ : -1);
-      kept.end_shift.push_back(first - chain.first_end_value);
-      if (kept.chains[c] != 0) first += 2 * chain.section_size();
+      if (!kept.chains[c].any() || chain.first_side < 0) continue;
+      // Known sides are blended across all lines.
+      kept.chains[c].include(0, 0);
+      kept.chains[c].include(chain.n_a - 1, chain.n_b - 1);
     }
+    kept.number_chains();
   }
 
-  /// The chain that an end value is of: their end values follow one another.
-  static std::size_t chain_of_end(LineTables const& lines, Index value) {
-    auto const after = std::upper_bound(lines.chains.begin(), lines.chains.end(), value,
-                                        [](Index v, kernels::Chain const& c) { return v < c.first_end_value; });
-    return std::size_t(after - lines.chains.begin()) - 1;
-  }
-  static bool is_kept(LineTables const& lines, KeptLines const& kept, Index value) {
-    return kept.chains[chain_of_end(lines, value)] != 0;
-  }
   static std::size_t side_of_node(SideTables const& sides, Index node) {
     auto const after = std::upper_bound(sides.sides.begin(), sides.sides.end(), node,
                                         [](Index n, kernels::Side const& s) { return n < s.first; });
@@ -319,36 +435,56 @@ class Sharing {
     std::vector<double> const t = parameters(from.lines, kept, first_parameter);
     std::vector<double> own;
     for (std::size_t c = 0; c < kept.chains.size(); ++c) {
-      if (kept.chains[c] == 0) continue;
-      kernels::Chain chain = from.lines.chains[c];
-      Index const n_values = 2 * chain.section_size();
-      if (!from.lines.end_positions.empty()) {
-        append_range(from.lines.end_positions, chain.first_end_value, n_values, to.lines.end_positions);
-        append_range(from.lines.end_pivots, chain.first_end_value, n_values, to.lines.end_pivots);
-      }
-      chain.first_end_value += kept.end_shift[c];
-      to.lines.n_end_values += n_values;
+      KeptChain const& lines = kept.chains[c];
+      if (!lines.any()) continue;
+      kernels::Chain const& whole = from.lines.chains[c];
+      kernels::Chain chain = whole;
+      chain.first_end_value = lines.first_end_value;
+      chain.n_a = lines.a.size();
+      chain.n_b = lines.b.size();
       to.lines.chains.push_back(chain);
+      to.lines.n_end_values += 2 * chain.section_size();
+      if (from.lines.end_positions.empty()) continue;
+      for (int end = 0; end < 2; ++end)
+        for (int b = lines.b.begin; b < lines.b.end; ++b) {
+          Index const row = whole.first_end_value + end * whole.section_size() + lines.a.begin + Index(whole.n_a) * b;
+          append_range(from.lines.end_positions, row, chain.n_a, to.lines.end_positions);
+          append_range(from.lines.end_pivots, row, chain.n_a, to.lines.end_pivots);
+        }
     }
-    for (std::size_t n = 0; n < from.sweeps.size(); ++n) {
-      if (kept.sweeps[n] == 0) continue;
-      kernels::SkeletonSweep sweep = from.sweeps[n];
-      if (sweep.t >= 0) {
-        sweep.t = append_parameters(t, sweep.t, {sweep.t_p, sweep.t_q, 0}, {sweep.n_p, sweep.n_q, 1}, own);
-        sweep.t_p = 1;
-        sweep.t_q = sweep.n_p;
-      }
-      if (sweep.x >= 0) {
-        Index const begin = std::exchange(sweep.x, Index(to.lines.swept_positions.size()));
-        append_range(from.lines.swept_positions, begin, Index(sweep.n_p) * sweep.n_q, to.lines.swept_positions);
-      }
-      sweep.chain = kept.number[sweep.chain];
-      to.sweeps.push_back(sweep);
-    }
+    for (std::size_t n = 0; n < from.sweeps.size(); ++n)
+      if (auto const& [p, q] = kept.sweeps[n]; p.any())
+        to.sweeps.push_back(share(from.sweeps[n], p, q, kept, from.lines, t, own, to.lines.swept_positions));
     for (VolumePart const& part : from.volume)
       for (Cut const& cut : cuts_of_[part.box]) to.volume.push_back(share(part, cut, kept, t, own));
     to.lines.n_parameters = Index(own.size());
     out_.line_parameters.insert(out_.line_parameters.end(), own.begin(), own.end());
+  }
+
+  static kernels::SkeletonSweep share(kernels::SkeletonSweep sweep, Range const& p, Range const& q,
+                                      KeptLines const& kept, LineTables const& from, std::vector<double> const& t,
+                                      std::vector<double>& own, std::vector<Vec3>& positions) {
+    KeptChain const& lines = kept.chains[sweep.chain];
+    if (sweep.x >= 0) {
+      Index const first = std::exchange(sweep.x, Index(positions.size()));
+      for (int m = q.begin; m < q.end; ++m)
+        append_range(from.swept_positions, first + p.begin + Index(sweep.n_p) * m, p.size(), positions);
+    }
+    if (sweep.t >= 0) {
+      Index const first = sweep.t + p.begin * sweep.t_p + q.begin * sweep.t_q;
+      sweep.t = append_parameters(t, first, {sweep.t_p, sweep.t_q, 0}, {p.size(), q.size(), 1}, own);
+      sweep.t_p = 1;
+      sweep.t_q = p.size();
+    }
+    for (auto* const place : {&sweep.s, &sweep.a, &sweep.b})
+      (*place)[0] += p.begin * (*place)[1] + q.begin * (*place)[2];
+    sweep.a[0] -= lines.a.begin;
+    sweep.b[0] -= lines.b.begin;
+    sweep.slot += p.begin + q.begin * sweep.slot_q;
+    sweep.n_p = p.size();
+    sweep.n_q = q.size();
+    sweep.chain = lines.number;
+    return sweep;
   }
 
   VolumePart share(VolumePart const& part, Cut const& cut, KeptLines const& kept, std::vector<double> const& t,
@@ -356,12 +492,16 @@ class Sharing {
     kernels::VolumeBox const &whole = whole_.boxes[part.box], &box = out_.boxes[cut.box];
     VolumePart out{cut.box, part.term};
     kernels::VolumeTerm& term = out.term;
-    term.end_value += kept.end_shift[term.chain];
-    term.chain = kept.number[term.chain];
+    KeptChain const& lines = kept.chains[term.chain];
     for (int d = 0; d < 3; ++d) {
       term.end_value += cut.begin[d] * term.end_stride[d];
       for (auto* const place : {&term.s, &term.a, &term.b}) (*place)[0] += cut.begin[d] * (*place)[1 + d];
     }
+    for (int d = 0; d < 3; ++d) term.end_stride[d] = kept.step(term.end_value, term.end_stride[d], box.n[d]);
+    term.end_value = kept.number(term.end_value);
+    term.chain = lines.number;
+    term.a[0] -= lines.a.begin;
+    term.b[0] -= lines.b.begin;
     if (term.t >= 0) {
       std::array<Index, 3> const stride{1, whole.n[0], Index(whole.n[0]) * whole.n[1]};
       Index const first = term.t + cut.begin[0] + cut.begin[1] * stride[1] + cut.begin[2] * stride[2];
@@ -373,20 +513,17 @@ class Sharing {
   Stage share(Stage const& from, KeptLines const& kept, Index& first_parameter) {
     Stage to;
     to.name = from.name;
-    to.turns = from.turns;
     share_lines(from, kept, first_parameter, to);
+    to.turns = from.turns && !to.lines.chains.empty();
     share_sides(from, kept, to);
-    for (kernels::NodeCopy copy : from.ends)
-      if (std::size_t const c = chain_of_end(from.lines, copy.destination); kept.chains[c] != 0) {
-        copy.destination += kept.end_shift[c];
-        to.ends.push_back(copy);
-      }
-    for (kernels::NearFieldLine line : from.near_field)
-      if (std::size_t const c = chain_of_end(from.lines, line.lower); kept.chains[c] != 0) {
-        line.lower += kept.end_shift[c];
-        line.upper += kept.end_shift[c];
-        to.near_field.push_back(line);
-      }
+    for (kernels::NodeCopy const& copy : from.ends)
+      if (auto const part = cut(copy, kept)) to.ends.push_back(renumbered(*part, kept));
+    for (kernels::NearFieldLine line : from.near_field) {
+      if (!kept.has(line.lower)) continue;
+      line.lower = kept.number(line.lower);
+      line.upper = kept.number(line.upper);
+      to.near_field.push_back(line);
+    }
     return to;
   }
 
@@ -397,8 +534,8 @@ class Sharing {
     std::vector<Index> node_shift(all.sides.size(), 0);
     for (std::size_t c = 0; c < kept.chains.size(); ++c) {
       kernels::Chain const& whole = from.lines.chains[c];
-      if (kept.chains[c] == 0 || whole.first_side < 0) continue;
-      kernels::Chain& chain = to.lines.chains[kept.number[c]];
+      if (!kept.chains[c].any() || whole.first_side < 0) continue;
+      kernels::Chain& chain = to.lines.chains[kept.chains[c].number];
       chain.first_side = std::int32_t(to.sides.sides.size());
       chain.first_junction = std::int32_t(to.sides.junctions.size());
       chain.first_section = Index(to.sides.section.size());
@@ -413,7 +550,7 @@ class Sharing {
         append_range(all.t, side.first, n, to.sides.t);
         if (!all.positions.empty()) append_range(all.positions, side.first, n, to.sides.positions);
         side.first += node_shift[number];
-        side.chain = kept.number[c];
+        side.chain = kept.chains[c].number;
         to.sides.sides.push_back(side);
       }
     }
@@ -423,7 +560,7 @@ class Sharing {
         to.sides.lines.push_back(line);
       }
     for (std::int32_t const chain : all.corrected)
-      if (kept.chains[chain] != 0) to.sides.corrected.push_back(kept.number[chain]);
+      if (kept.chains[chain].any()) to.sides.corrected.push_back(kept.chains[chain].number);
     for (kernels::NodeCopy copy : all.gathers)
       if (std::size_t const side = side_of_node(all, copy.destination); side_number[side] >= 0) {
         copy.destination += node_shift[side];
@@ -435,8 +572,8 @@ class Sharing {
     SpreadPass to;
     share_lines(from, kept, first_parameter, to);
     for (kernels::SlipEnd end : from.ends)
-      if (std::size_t const c = chain_of_end(from.lines, end.value); kept.chains[c] != 0) {
-        end.value += kept.end_shift[c];
+      if (kept.has(end.value)) {
+        end.value = kept.number(end.value);
         to.positions.push_back(mesh_.coordinates[end.node]);
         to.ends.push_back(end);
       }

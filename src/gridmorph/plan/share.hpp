@@ -11,11 +11,11 @@ namespace gridmorph {
 /// The plan of the nodes of these boxes, box after box, i fastest within each. Boxes may overlap, as planes that parts
 /// of a zone have in common or layers of ghost nodes do: each box has its own copy of a node.
 ///
-/// Of every stage it has the chains that the boxes depend on, whole, back to the boundary, and of the pass through the
-/// volume the rows in the boxes. Nothing that decides a value is cut, so nodes go to the same bits as by the whole
-/// plan, and nothing is exchanged with whoever has the others. Boundary nodes are all of the whole plan's, with its
-/// numbers; what a plan says for reports is left to it. Line parameters are measured along whole lines of `mesh` here;
-/// the share has no lines itself, and no transpose.
+/// Of every stage it has the lines that the boxes depend on, back to the boundary, and of the pass through the volume
+/// the rows in the boxes; chains beside known sides are kept whole. Nothing that decides a value is cut, so nodes go to
+/// the same bits as by the whole plan, and nothing is exchanged with whoever has the others. Boundary nodes are all of
+/// the whole plan's, with its numbers; what a plan says for reports is left to it. Line parameters are measured along
+/// whole lines of `mesh` here; the share has no lines itself, and no transpose.
 ///
 /// Throws ConfigError: a zone that the mesh has not, a box that is empty or goes beyond its zone. Cost: arc lengths of
 /// all lines of the chains kept; memory 8 bytes per line parameter of one stage of the whole plan at a time, and what
