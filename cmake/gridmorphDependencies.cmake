@@ -20,6 +20,9 @@ if(GRIDMORPH_ENABLE_IO)
   endif()
 endif()
 
+# The C++ bindings that MPI had until its version 3 are another library, which no header of ours needs and newer MPIs do not have.
+set(MPI_CXX_SKIP_MPICXX ON)
+
 # find_package with a sentence about what a missing package is for.
 macro(gridmorph_require option purpose name)
   if(${option})
@@ -37,5 +40,6 @@ gridmorph_require(GRIDMORPH_ENABLE_CLI "Case files and the gridmorph command" nl
 gridmorph_require(GRIDMORPH_ENABLE_CLI "Case files and the gridmorph command" muparser CONFIG)
 gridmorph_require(GRIDMORPH_ENABLE_CLI "Case files and the gridmorph command" nanoflann CONFIG)
 gridmorph_require(GRIDMORPH_ENABLE_CLI "Case files and the gridmorph command" fmt CONFIG)
+gridmorph_require(GRIDMORPH_ENABLE_MPI "Ranks of MPI (scripts/install-dependencies --mpi)" MPI COMPONENTS CXX)
 gridmorph_require(GRIDMORPH_ENABLE_TESTS "The tests" GTest)
 gridmorph_require(GRIDMORPH_ENABLE_BENCHMARKS "The benchmarks" benchmark CONFIG)

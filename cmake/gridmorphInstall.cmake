@@ -1,4 +1,4 @@
-# Install and package files: find_package(gridmorph [COMPONENTS core io]).
+# Install and package files: find_package(gridmorph [COMPONENTS core io mpi]).
 #
 # Components of cmake --install: `runtime` (the command, shared libraries, manual page, completion, scripts that draw),
 # `development` (headers, static libraries, package files) and `documentation` (pages, examples with their meshes).
@@ -29,6 +29,9 @@ gridmorph_install(core gridmorph_kernels gridmorph)
 if(GRIDMORPH_ENABLE_IO)
   gridmorph_install(io gridmorph_io)
   install(FILES "${PROJECT_SOURCE_DIR}/cmake/FindCGNS.cmake" DESTINATION "${package_folder}" COMPONENT development)
+endif()
+if(GRIDMORPH_ENABLE_MPI)
+  gridmorph_install(mpi gridmorph_mpi)
 endif()
 if(GRIDMORPH_ENABLE_CLI)
   install(TARGETS gridmorph_cli COMPONENT runtime)

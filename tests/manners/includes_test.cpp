@@ -11,9 +11,9 @@
 namespace {
 
 /// From the bottom to the top: a folder includes itself and those before it.
-std::vector<std::string> const order{"kernels", "core",   "geometry", "mesh", "boundary", "motion", "quality",
-                                     "plan",    "morph",  "guard",    "io",   "wheel",    "fillet", "mapping",
-                                     "case",    "report", "page",     "run",  "command"};
+std::vector<std::string> const order{"kernels", "core",  "geometry", "mesh", "boundary", "motion", "quality",
+                                     "plan",    "morph", "guard",    "io",   "mpi",      "wheel",  "fillet",
+                                     "mapping", "case",  "report",   "page", "run",      "command"};
 
 /// What only the folder that they are in may include.
 std::regex const inner(R"(^[a-z0-9_/]+/detail/|^plan/(blocks|elements)/)");
