@@ -4,11 +4,14 @@
 #include <gridmorph/boundary/find_interfaces.hpp>
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/guard/guard.hpp>
+#include <gridmorph/mesh/deal_zones.hpp>
 #include <gridmorph/mesh/file_order.hpp>
+#include <gridmorph/mesh/gather_coordinates.hpp>
 #include <gridmorph/mesh/point_ranges.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/parameter_gradient.hpp>
+#include <gridmorph/morph/plan_share.hpp>
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/motion/inflation_heights.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>

@@ -4,14 +4,18 @@
 #include "support/morph_run.hpp"
 #include "support/random.hpp"
 #include "support/reduced.hpp"
+#include "support/transpose_check.hpp"
 
+#include <gridmorph/morph/share_contents.hpp>
 #include <gridmorph/plan/share.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::test {
@@ -70,7 +74,9 @@ TEST_P(Shares, MoveTheirNodesToTheSameBits) {
   for (int const n : reduced() ? std::vector<int>{3} : std::vector<int>{1, 2, 5}) {
     Index moved = 0;
     for (auto const& boxes : dealt(whole.mesh, n, random)) {
-      Plan const share = share_of({}, whole.plan(), whole.mesh, boxes);
+      // As another process gets it.
+      Plan const share =
+          share_from_bytes(to_bytes(ShareContents{share_of({}, whole.plan(), whole.mesh, boxes), {}, {}, {}})).chains;
       auto const nodes = nodes_of(whole.mesh, boxes);
       ASSERT_EQ(share.n_nodes, Index(nodes.size()));
       Morphed const own = run_plan(exec, at(whole.mesh.coordinates, nodes), share, whole.boundary);
@@ -80,6 +86,37 @@ TEST_P(Shares, MoveTheirNodesToTheSameBits) {
     }
     EXPECT_GE(moved, whole.mesh.n_nodes());
   }
+}
+
+/// Sum over shares of what each hands back of the gradients of its nodes, those of copies being zero, and how far
+/// velocities are from those of the whole plan.
+TEST_P(Shares, HaveTheVelocitiesOfTheWholeAndGradientsThatAddUpToItsOwn) {
+  using Exec = Kokkos::DefaultHostExecutionSpace;
+  Outcome const whole = morph(GetParam().mesh(), GetParam().motion(1), GetParam().options);
+  Random random(11);
+  LinearisedMorph<Exec> const all(whole.plan(), whole.mesh.coordinates, whole.boundary);
+  Coordinates const rate = random_vectors(3, all.boundary.size()), g = random_vectors(4, all.n_nodes);
+  Coordinates const velocity = all.forwards(rate), expected = all.backwards(g);
+  std::vector<Vec3> sum(std::size_t(expected.size()));
+  std::vector<char> counted(std::size_t(all.n_nodes), 0);
+  for (auto const& boxes : dealt(whole.mesh, 3, random)) {
+    Plan const share = share_of({}, whole.plan(), whole.mesh, boxes);
+    auto const nodes = nodes_of(whole.mesh, boxes);
+    LinearisedMorph<Exec> const own(share, at(whole.mesh.coordinates, nodes), whole.boundary);
+    EXPECT_EQ(different_bits(own.forwards(rate), at(velocity, nodes)), 0);
+    Coordinates own_g = at(g, nodes);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      if (std::exchange(counted[std::size_t(nodes[n])], 1) != 0) own_g.set(Index(n), {});
+    Coordinates const back = own.backwards(own_g);
+    for (Index n = 0; n < back.size(); ++n) sum[std::size_t(n)] += back[n];
+  }
+  double worst = 0, largest = 0;
+  for (Index n = 0; n < expected.size(); ++n) {
+    double const d = distance(sum[std::size_t(n)], expected[n]);
+    worst = std::isfinite(d) ? std::max(worst, d) : HUGE_VAL;
+    largest = std::max(largest, norm(expected[n]));
+  }
+  EXPECT_LE(worst, 1e-11 * largest);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Shares, ::testing::ValuesIn(make_cases()),

@@ -1,17 +1,21 @@
 // Shares of plans: what they leave out, what a Morpher of one serves, what is refused. That nodes go to the same bits
 // is an invariant of all cases.
 #include <gridmorph/core/error.hpp>
-#include <gridmorph/morph/morph.hpp>
+#include <gridmorph/morph/morpher.hpp>
+#include <gridmorph/morph/plan_access.hpp>
+#include <gridmorph/morph/plan_share.hpp>
 #include <gridmorph/plan/share.hpp>
 
 #include "support/expect_error.hpp"
 #include "support/morph_run.hpp"
 #include "support/motions.hpp"
+#include "support/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <utility>
 
 namespace gridmorph::test {
@@ -82,14 +86,14 @@ TEST(Share, ServesArraysOfAnyKindSeveralFieldsAndVelocities) {
   Mesh const mesh = side_by_side(4);
   MorphPlan const plan(mesh, wall_moves());
   auto const boxes = zones(mesh, {2, 0});
-  MorphPlan const share = plan.share({}, mesh, boxes);
-  ASSERT_EQ(share.n_nodes(), mesh.zones[2].size() + mesh.zones[0].size());
-  EXPECT_EQ(share.boundary_nodes(), plan.boundary_nodes());
-  EXPECT_EQ(share.boundary_displacement(), plan.boundary_displacement());
+  PlanShare const own_share = share({}, plan, mesh, boxes);
+  ASSERT_EQ(own_share.n_nodes(), mesh.zones[2].size() + mesh.zones[0].size());
+  EXPECT_EQ(own_share.boundary_nodes(), plan.boundary_nodes());
+  EXPECT_EQ(own_share.boundary_displacement(), plan.boundary_displacement());
 
   using Floats = Kokkos::View<float* [3], Kokkos::LayoutRight, Kokkos::HostSpace>;
   using Doubles = Kokkos::View<double* [3], Kokkos::LayoutLeft, Kokkos::HostSpace>;
-  Floats const x("x", mesh.n_nodes()), own_x("own_x", share.n_nodes());
+  Floats const x("x", mesh.n_nodes()), own_x("own_x", own_share.n_nodes());
   Mesh rounded = mesh;  // the plan is of the coordinates that the program has
   rounded.coordinates = Coordinates(mesh.n_nodes());
   Index own = 0;
@@ -108,7 +112,7 @@ TEST(Share, ServesArraysOfAnyKindSeveralFieldsAndVelocities) {
   MorphPlan const of_floats(rounded, wall_moves());
   Exec const exec;
   Morpher<Exec> const morpher(exec, of_floats, x, {.fields = 2, .velocity = true});
-  Morpher<Exec> const part(exec, of_floats.share({}, rounded, boxes), own_x, {.fields = 2, .velocity = true});
+  Morpher<Exec> const part(exec, share({}, of_floats, rounded, boxes), own_x, {.fields = 2, .velocity = true});
   auto b = of_floats.boundary_displacement();
   std::vector<Vec3> twice;
   for (Vec3 const& u : b) twice.push_back(2 * u);
@@ -132,26 +136,74 @@ TEST(Share, ServesArraysOfAnyKindSeveralFieldsAndVelocities) {
   expect_same(own_x, x, "position");
 }
 
+/// A guard's smoothing of two modes: random shifts of some nodes in space, and of points of the skeleton on a plane.
+SmoothingMap some_smoothing(Mesh const& mesh, Plan const& plan) {
+  Random random(9);
+  SmoothingMap map;
+  map.n_modes = 2;
+  map.n_nodes = mesh.n_nodes();
+  map.n_boundary = Index(plan.boundary_nodes.size());
+  for (Index n = 0; n < 2 * map.n_boundary; ++n) map.gauge.push_back(random.vector(1));
+  for (Index n = 0; n < map.n_nodes; n += 3) {
+    map.node.push_back(n);
+    for (int mode = 0; mode < 2; ++mode) map.shift.push_back(random.vector(0.01));
+  }
+  map.surfaces.emplace_back();
+  map.surfaces.front().direction = {0, 0.6, 0.8};
+  map.surfaces.front().size = 1;
+  for (kernels::NodeCopy const& copy : plan.skeleton_nodes) {
+    if (copy.matrix >= 0 || random.coin()) continue;
+    kernels::SlidingShift slide{copy.source, copy.destination, -1, {0, -1, -1}, {0, 0, 0}, {}};
+    slide.position = mesh.coordinates[copy.destination];
+    map.slide_nodes.push_back({copy.destination, std::int32_t(map.slides.size()), -1});
+    map.slides.push_back(slide);
+    for (int mode = 0; mode < 2; ++mode) map.slide_shift.push_back(random.vector(0.01));
+  }
+  return map;
+}
+
+TEST(Share, HasWhatAGuardMovedItsNodesBy) {
+  Mesh const mesh = around_a_box(3);
+  MorphPlan const plan(mesh, motion({rule({"step"}, function_rule(waves(0.02))), rule({"u_*", "v_*"}, FixedRule{}),
+                                     rule({"w_*"}, FreeRule{})}));
+  MorphPlan const guarded =
+      plan.with(std::make_shared<SmoothingMap const>(some_smoothing(mesh, *PlanAccess::chains(plan))));
+  auto const moved = [&](auto const& plan_or_share, Coordinates const& x) {
+    Coordinates out(x.size());
+    Morpher<Exec> const morpher(Exec(), plan_or_share, x);
+    morpher.positions(Exec(), upload<Kokkos::HostSpace>(plan.boundary_displacement()), out);
+    Exec().fence();
+    return out;
+  };
+  Coordinates const without = moved(plan, mesh.coordinates), with = moved(guarded, mesh.coordinates);
+  EXPECT_GT(different_bits(without, with), mesh.n_nodes() / 3);
+  // A zone twice, as if it were a layer of ghost nodes too, and another.
+  auto const boxes = zones(mesh, {4, 1, 4});
+  Coordinates x(2 * mesh.zones[4].size() + mesh.zones[1].size()), expected(x.size());
+  Index own = 0;
+  for (int const z : {4, 1, 4})
+    for (Index n = 0; n < mesh.zones[z].size(); ++n, ++own) {
+      x.set(own, mesh.coordinates[mesh.zones[z].first_node + n]);
+      expected.set(own, with[mesh.zones[z].first_node + n]);
+    }
+  EXPECT_EQ(different_bits(moved(share({}, guarded, mesh, boxes), x), expected), 0);
+}
+
 TEST(Share, RefusesWhatItCannotBe) {
   Mesh const mesh = side_by_side(3);
   MorphPlan const plan(mesh, wall_moves());
-  auto const share = [&](std::vector<NodeBox> const& boxes) { return plan.share({}, mesh, boxes); };
-  expect_all_in(message_of<ConfigError>([&] { share({{3, whole(mesh.zones[0])}}); }), {"zone 3", "3 zones"});
-  expect_all_in(message_of<ConfigError>([&] { share({{-1, whole(mesh.zones[0])}}); }), {"zone -1"});
+  auto const of = [&](std::vector<NodeBox> const& boxes) { return share({}, plan, mesh, boxes); };
+  expect_all_in(message_of<ConfigError>([&] { of({{3, whole(mesh.zones[0])}}); }), {"zone 3", "3 zones"});
+  expect_all_in(message_of<ConfigError>([&] { of({{-1, whole(mesh.zones[0])}}); }), {"zone -1"});
   for (IndexRange const& nodes : {IndexRange{{0, 0, 0}, {8, 4, 5}}, IndexRange{{-1, 0, 0}, {7, 4, 5}},
                                   IndexRange{{0, 2, 0}, {7, 2, 5}}, IndexRange{{0, 3, 0}, {7, 1, 5}}})
     expect_all_in(message_of<ConfigError>([&] {
-                    share({{1, nodes}});
+                    of({{1, nodes}});
                   }),
                   {to_string(nodes), mesh.zones[1].name, "[1:7, 1:4, 1:5]"});
   Mesh other = side_by_side(2);
-  expect_all_in(message_of<ConfigError>([&] { (void)plan.share({}, other, {}); }),
+  expect_all_in(message_of<ConfigError>([&] { (void)share({}, plan, other, {}); }),
                 {"mesh of 420 nodes", "this one has 280"});
-  MorphPlan const first = share(zones(mesh, {0}));
-  expect_all_in(message_of<ConfigError>([&] { (void)first.share({}, mesh, {}); }), {"share already"});
-  Kokkos::View<double* [3], Kokkos::HostSpace> const x("x", first.n_nodes());
-  expect_all_in(message_of<ConfigError>([&] { Morpher<Exec>(Exec(), first, x, {.transpose = true}); }),
-                {"share", "transpose", "whole plan"});
 }
 
 }  // namespace

@@ -13,6 +13,9 @@ namespace gridmorph {
 using Index = std::int64_t;         ///< node number in the flat arrays of a mesh
 using Index3 = std::array<int, 3>;  ///< (i, j, k)
 
+[[nodiscard]] inline Index3 plus(Index3 const& a, Index3 const& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+[[nodiscard]] inline Index3 minus(Index3 const& a, Index3 const& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
 /// Half-open box of node indices: begin <= (i, j, k) < end.
 struct IndexRange {
   Index3 begin{0, 0, 0};
@@ -27,6 +30,17 @@ struct IndexRange {
   }
   friend bool operator==(IndexRange const&, IndexRange const&) = default;
 };
+
+/// The indices that are in both; empty, of size 0, where none is.
+[[nodiscard]] inline IndexRange intersection(IndexRange const& a, IndexRange const& b) {
+  IndexRange out;
+  for (int d = 0; d < 3; ++d) {
+    out.begin[d] = a.begin[d] > b.begin[d] ? a.begin[d] : b.begin[d];
+    out.end[d] = a.end[d] < b.end[d] ? a.end[d] : b.end[d];
+    if (out.end[d] < out.begin[d]) out.end[d] = out.begin[d];
+  }
+  return out;
+}
 
 /// "[1:33, 1:1, 5:9]", 1-based and inclusive as users see it in their files.
 std::string to_string(IndexRange const& range);

@@ -11,7 +11,6 @@
 #include <gridmorph/morph/predictor.hpp>
 #include <gridmorph/plan/common_parts.hpp>
 #include <gridmorph/plan/prepare.hpp>
-#include <gridmorph/plan/share.hpp>
 #include <gridmorph/plan/trim_note.hpp>
 #include <gridmorph/plan/unstructured_plan.hpp>
 #include <gridmorph/quality/quality.hpp>
@@ -169,9 +168,6 @@ PreparedMorph const* PlanAccess::blocks(MorphPlan const& plan) {
 PreparedUnstructured const* PlanAccess::elements(MorphPlan const& plan) {
   return plan.state_->elements ? &*plan.state_->elements : nullptr;
 }
-Plan const& PlanAccess::applied(MorphPlan const& plan) {
-  return plan.share_ ? *plan.share_ : plan.state_->blocks->plan();
-}
 MorphPlan PlanAccess::of(PreparedMorph&& prepared) {
   return MorphPlan(std::make_shared<MorphPlan::State const>(std::move(prepared)));
 }
@@ -187,7 +183,6 @@ std::vector<int> some_steps(int n, int most) {
 }
 
 Index MorphPlan::n_nodes() const {
-  if (share_) return share_->n_nodes;
   return state_->blocks ? state_->blocks->plan().n_nodes : state_->elements->plan.n_nodes;
 }
 
@@ -284,21 +279,6 @@ std::vector<PlanSeconds> MorphPlan::seconds() const {
   std::vector<PlanSeconds> out{{"topology", took.topology}, {"rules", took.rules}, {"plan", took.plan}};
   if (state_->predicting > 0) out.push_back({"prediction", state_->predicting});
   if (state_->ordering > 0) out.push_back({"order", state_->ordering});
-  return out;
-}
-
-MorphPlan MorphPlan::share(HostInstance const& host, Mesh const& mesh, std::span<NodeBox const> boxes) const {
-  char const* const who = "gridmorph::MorphPlan::share: ";
-  if (state_->elements) throw ConfigError(who + std::string("elements have no shares yet, only blocks do"));
-  if (smoothing_) throw ConfigError(who + std::string("a guard's smoothing has no share; take it of the plan without"));
-  PreparedMorph const& of = *state_->blocks;
-  if (share_) throw ConfigError(who + std::string("this plan is a share already; take it of the whole"));
-  if (mesh.n_nodes() != n_nodes() || mesh.coordinates.size() != n_nodes())
-    throw ConfigError(who + std::string("the plan is of a mesh of ") + std::to_string(n_nodes()) +
-                      " nodes; this one has " + std::to_string(mesh.n_nodes()) + ", and coordinates of " +
-                      std::to_string(mesh.coordinates.size()));
-  MorphPlan out = *this;
-  out.share_ = std::make_shared<Plan const>(share_of(host, of.plan(), mesh, boxes));
   return out;
 }
 

@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +21,6 @@
 namespace gridmorph {
 
 class BoundaryMotion;
-struct Plan;
 struct PlanAccess;
 struct SmoothingMap;
 struct Trim;
@@ -105,14 +103,6 @@ class MorphPlan {
   [[nodiscard]] std::vector<Trim> trims(std::vector<Vec3> const& boundary, Motion const& motion) const;
   [[nodiscard]] std::vector<PlanSeconds> seconds() const;
 
-  /// The share that some boxes of nodes have in a plan of blocks: for a program on many processes, each with zones or
-  /// parts of zones of its own, ghost layers too. A Morpher of it has one vector for each node of the boxes, box after
-  /// box, i fastest, and moves them to the same bits as the whole plan does; nothing is exchanged. All else is as of
-  /// the whole plan: what is given is the displacement of all its boundary nodes, on every process. See
-  /// plan/share.hpp for what is kept. Of `mesh`, which is that of the plan, lines are measured here. Throws
-  /// ConfigError: a plan of elements, of a share, or with a guard's smoothing; a box that is not within its zone.
-  [[nodiscard]] MorphPlan share(HostInstance const& host, Mesh const& mesh, std::span<NodeBox const> boxes) const;
-
   /// The same plan, and what a guard did to some of its meshes as a linear part of every morph
   /// (guard/guard.hpp).
   [[nodiscard]] MorphPlan with(std::shared_ptr<SmoothingMap const> smoothing) const;
@@ -126,7 +116,6 @@ class MorphPlan {
 
   std::shared_ptr<State const> state_;
   std::shared_ptr<SmoothingMap const> smoothing_;
-  std::shared_ptr<Plan const> share_;
 };
 
 /// The coordinates of a mesh that lie in the memory of an execution space, in any layout, on the host: what plans read.

@@ -197,8 +197,8 @@ std::shared_ptr<State const> state_of(Exec const& exec, AnyPlan const& plan,
   return std::make_shared<State const>(exec, plan, baseline, options);
 }
 
-MorpherOptions with_smoothing(MorpherOptions options, MorphPlan const& plan) {
-  if (!options.smoothing) options.smoothing = plan.smoothing();
+MorpherOptions with_smoothing(MorpherOptions options, std::shared_ptr<SmoothingMap const> const& of_plan) {
+  if (!options.smoothing) options.smoothing = of_plan;
   return options;
 }
 
@@ -215,9 +215,14 @@ Morpher<Exec>::Morpher(Exec const& exec, UnstructuredPlan const& plan, In const&
 
 template <BuiltFor Exec>
 Morpher<Exec>::Morpher(Exec const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options)
-    : Morpher(PlanAccess::blocks(plan)
-                  ? Morpher(exec, PlanAccess::applied(plan), baseline, with_smoothing(options, plan))
-                  : Morpher(exec, PlanAccess::elements(plan)->plan, baseline, with_smoothing(options, plan))) {}
+    : Morpher(
+          PlanAccess::blocks(plan)
+              ? Morpher(exec, PlanAccess::blocks(plan)->plan(), baseline, with_smoothing(options, plan.smoothing()))
+              : Morpher(exec, PlanAccess::elements(plan)->plan, baseline, with_smoothing(options, plan.smoothing()))) {}
+
+template <BuiltFor Exec>
+Morpher<Exec>::Morpher(Exec const& exec, PlanShare const& share, In const& baseline, MorpherOptions const& options)
+    : Morpher(exec, PlanAccess::chains(share), baseline, with_smoothing(options, PlanAccess::smoothing(share))) {}
 
 template <BuiltFor Exec>
 void Morpher<Exec>::positions(Exec const& exec, In const& boundary, Out const& moved) const {

@@ -13,6 +13,7 @@
 namespace gridmorph {
 
 class MorphPlan;
+class PlanShare;
 struct MorpherAccess;
 struct Plan;
 struct SmoothingMap;
@@ -52,6 +53,9 @@ class Morpher {
 
   /// The arrays of the baseline are not copied: positions() reads them again.
   Morpher(ExecutionSpace const& exec, MorphPlan const& plan, In const& baseline, MorpherOptions const& options = {});
+  /// Of a share, whose nodes are meant where the mesh's are spoken of. The sum of transpose() over the shares of all
+  /// processes is that of the whole plan, to round-off, where each node's dJ_du is in one of them and zero in others.
+  Morpher(ExecutionSpace const& exec, PlanShare const& share, In const& baseline, MorpherOptions const& options = {});
 
   /// moved(n) = x(n) + u(n) for every node, bit for bit x(n) where it does not move. `moved` may be the baseline
   /// itself, which is gone then. Cost per node: 24 bytes read, 24 written, 8 read per line parameter.

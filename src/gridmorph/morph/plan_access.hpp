@@ -10,6 +10,7 @@ namespace gridmorph {
 
 class BlockPoints;
 class BoundaryMotion;
+class PlanShare;
 struct BlockGraph;
 struct BoundaryConditions;
 struct GuardedElements;
@@ -19,6 +20,7 @@ struct Plan;
 struct PlannedElements;
 struct PlannedMorph;
 struct PreparedMorph;         ///< plan/prepare.hpp
+struct ShareContents;         ///< morph/share_contents.hpp
 struct PreparedUnstructured;  ///< plan/unstructured_plan.hpp
 
 struct PlanAccess {
@@ -26,8 +28,11 @@ struct PlanAccess {
   /// else asks for what it needs of them, below.
   static PreparedMorph const* blocks(MorphPlan const& plan);
   static PreparedUnstructured const* elements(MorphPlan const& plan);
-  /// What a Morpher applies, of blocks alone: the plan or, where `plan` is a share, that share of it.
-  static Plan const& applied(MorphPlan const& plan);
+  /// What a Morpher of a share applies.
+  static Plan const& chains(PlanShare const& share);
+  /// Null where it carries none.
+  static std::shared_ptr<SmoothingMap const> const& smoothing(PlanShare const& share);
+  static PlanShare of(ShareContents&& contents);
 
   /// Plans that were made in another way than by rules on a mesh as it stands.
   static MorphPlan of(PreparedMorph&& prepared);

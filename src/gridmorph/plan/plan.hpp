@@ -139,7 +139,6 @@ struct Plan {
   /// Line parameters of all stages and passes, one after another, where they are not to be measured along the
   /// baseline's lines.
   std::vector<double> line_parameters;
-  bool is_share = false;  ///< of some boxes of nodes (plan/share.hpp), whose numbers nodes have; it has no lines
 };
 
 /// The stages and chains in order, with the reason for each rank, as text; of a stage or a pass at most so many chains,

@@ -12,17 +12,6 @@
 namespace gridmorph {
 namespace {
 
-IndexRange common(IndexRange const& a, IndexRange const& b) {
-  IndexRange out;
-  for (int d = 0; d < 3; ++d) {
-    out.begin[d] = std::max(a.begin[d], b.begin[d]);
-    out.end[d] = std::max(out.begin[d], std::min(a.end[d], b.end[d]));
-  }
-  return out;
-}
-
-Index3 minus(Index3 const& a, Index3 const& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 /// A box of the share, with the number of its first node there.
 struct OwnBox {
   IndexRange nodes;
@@ -47,7 +36,7 @@ class OwnBoxes {
         throw ConfigError("a share asks for zone " + std::to_string(box.zone) + ", counted from 0; the mesh has " +
                           std::to_string(mesh.zones.size()) + " zones");
       Zone const& zone = mesh.zones[box.zone];
-      if (box.nodes.size() < 1 || common(box.nodes, {{0, 0, 0}, zone.extent}) != box.nodes)
+      if (box.nodes.size() < 1 || intersection(box.nodes, {{0, 0, 0}, zone.extent}) != box.nodes)
         throw ConfigError("a share asks for nodes " + to_string(box.nodes) + " of zone '" + zone.name +
                           "', which has " + to_string(IndexRange{{0, 0, 0}, zone.extent}) +
                           "; name a box of nodes within the zone");
@@ -228,7 +217,6 @@ class Sharing {
 
   Plan result() {
     out_.n_nodes = own_.n_nodes();
-    out_.is_share = true;
     copy_what_all_need();
     cut_volume();
     cut_skeleton_nodes();
@@ -269,7 +257,7 @@ class Sharing {
       int const z = mesh_.zone_of(box.first);
       Index3 const at = mesh_.zones[z].index(box.first);
       for (OwnBox const& own : own_.in_zone(z)) {
-        IndexRange const nodes = common(own.nodes, {at, {at[0] + box.n[0], at[1] + box.n[1], at[2] + box.n[2]}});
+        IndexRange const nodes = intersection(own.nodes, {at, {at[0] + box.n[0], at[1] + box.n[1], at[2] + box.n[2]}});
         if (nodes.size() < 1) continue;
         cuts_of_[b].push_back({int(out_.boxes.size()), minus(nodes.begin, at)});
         kernels::VolumeBox part = box;
@@ -594,6 +582,35 @@ class Sharing {
 
 Plan share_of(HostInstance const& host, Plan const& whole, BoundaryMesh const& mesh, std::span<NodeBox const> boxes) {
   return Sharing(host, whole, mesh, boxes).result();
+}
+
+SmoothingMap share_of(SmoothingMap const& whole, BoundaryMesh const& mesh, std::span<NodeBox const> boxes) {
+  OwnBoxes const own(mesh, boxes);
+  SmoothingMap out = whole;
+  out.n_nodes = own.n_nodes();
+  out.node.clear();
+  out.shift.clear();
+  out.slide_nodes.clear();
+  auto const for_copies = [&](Index node, auto const& visit) {
+    int const z = mesh.zone_of(node);
+    Index3 const at = mesh.zones[z].index(node);
+    for (OwnBox const& box : own.in_zone(z))
+      if (box.nodes.contains(at)) visit(box.node(at));
+  };
+  std::vector<std::pair<Index, std::size_t>> moved;  // node here, entry there
+  for (std::size_t k = 0; k < whole.node.size(); ++k)
+    for_copies(whole.node[k], [&](Index node) { moved.emplace_back(node, k); });
+  std::sort(moved.begin(), moved.end());
+  for (auto const& [node, k] : moved) {
+    out.node.push_back(node);
+    append_range(whole.shift, Index(k) * whole.n_modes, whole.n_modes, out.shift);
+  }
+  for (kernels::SlidingNode const& slides : whole.slide_nodes)
+    for_copies(slides.node, [&](Index node) {
+      out.slide_nodes.push_back(slides);
+      out.slide_nodes.back().node = node;
+    });
+  return out;
 }
 
 }  // namespace gridmorph

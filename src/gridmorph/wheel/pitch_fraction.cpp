@@ -9,20 +9,11 @@ namespace gridmorph {
 
 namespace {
 
-IndexRange common(IndexRange const& a, IndexRange const& b) {
-  IndexRange out;
-  for (int d = 0; d < 3; ++d) {
-    out.begin[d] = std::max(a.begin[d], b.begin[d]);
-    out.end[d] = std::max(out.begin[d], std::min(a.end[d], b.end[d]));
-  }
-  return out;
-}
-
 using Edges = std::vector<std::array<Index, 2>>;
 
 /// The edges of a patch of a block: those of the grid line in which it meets the link.
 Edges edges_of_line(Zone const& zone, Patch const& patch, PassageLink const& link) {
-  IndexRange const line = common(patch.range, link.range);
+  IndexRange const line = intersection(patch.range, link.range);
   std::vector<Index> nodes;
   if (line.size() >= 2) for_each_node(zone, line, [&](Index n) { nodes.push_back(n); });
   Edges out;

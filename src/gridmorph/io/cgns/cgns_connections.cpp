@@ -93,8 +93,6 @@ Joined join(ZoneLayout const& zone, Corners const& own, ZoneLayout const& donor,
   return out;
 }
 
-Index3 minus(Index3 const& a, Index3 const& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 /// Axis and sign of a unit step; nothing for any other step.
 std::optional<std::pair<int, int>> unit_step(Index3 const& d) {
   if (std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) != 1) return std::nullopt;

@@ -1,7 +1,6 @@
 // A plan of either kind as what a Morpher runs: a list of stages, the fields they work on, and who writes the nodes.
 #pragma once
 
-#include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
 #include <gridmorph/kernels/listed_nodes.hpp>
 #include <gridmorph/mesh/vector_view.hpp>
@@ -110,9 +109,6 @@ struct StageList {
 /// x: only while the list is made.
 template <class Exec>
 StageList<Exec> stage_list(Exec const& exec, Plan const& plan, Baseline const& x, MorpherOptions const& options) {
-  if (plan.is_share && (options.transpose || options.smoothing))
-    throw ConfigError(std::string("gridmorph::Morpher: the share of a plan has no ") +
-                      (options.transpose ? "transpose" : "smoothing of a guard") + "; make it of the whole plan");
   int const n_fields = std::max(options.fields, options.velocity || options.transpose ? 2 : 1);
   auto const tables = std::make_shared<detail::DevicePlan<Exec>>(exec, plan, x, n_fields);
   if (options.transpose) tables->transposed = std::make_shared<detail::TransposedPlan<Exec> const>(exec, *tables);

@@ -47,8 +47,6 @@ kernels::ParameterTarget target(PlacedBox const& box, ParameterRange const& rang
   return t;
 }
 
-Index3 plus(Index3 const& a, Index3 const& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
 }  // namespace
 
 std::int32_t to_chain_frame(PlanContext const& context, PlacedBox const& box, int entity) {
