@@ -51,6 +51,11 @@ def names_for(folder, monkeypatch):
     def one_process():
         return type("MPI", (), {"COMM_WORLD": None})
 
+    def one_rank():
+        alone = {"Get_rank": lambda _: 0, "gather": lambda _, own, root: [own], "bcast": lambda _, value, root: value,
+                 "scatter": lambda _, values, root: values[root]}
+        return type("Communicator", (), alone)()
+
     def off_screen():
         import pyvista
 
@@ -62,7 +67,7 @@ def names_for(folder, monkeypatch):
         if not (folder / "examples").exists():
             (folder / "examples").symlink_to(ROOT / "examples")
 
-    return {"elements_of_a_wedge": elements_of_a_wedge, "one_process": one_process, "off_screen": off_screen,
+    return {"elements_of_a_wedge": elements_of_a_wedge, "one_process": one_process, "one_rank": one_rank, "off_screen": off_screen,
             "in_the_project": in_the_project, "mesh_of_wing": lambda: gridmorph.Mesh.read(folder / "wing.cgns"),
             "instead_of": lambda name, module: monkeypatch.setitem(sys.modules, name, module), "numpy": numpy, "pytest": pytest}
 

@@ -17,16 +17,12 @@ struct Part {
   int number = 0;
 };
 
-std::optional<IndexRange> intersection(IndexRange const& a, IndexRange const& b) {
-  IndexRange r;
+/// What two boxes have in common where it is a face.
+std::optional<IndexRange> common_face(IndexRange const& a, IndexRange const& b) {
+  IndexRange const r = intersection(a, b);
   int flat = 0;
-  for (int d = 0; d < 3; ++d) {
-    r.begin[d] = std::max(a.begin[d], b.begin[d]);
-    r.end[d] = std::min(a.end[d], b.end[d]);
-    if (r.extent(d) < 1) return std::nullopt;
-    flat += r.extent(d) == 1;
-  }
-  return flat == 1 ? std::optional(r) : std::nullopt;
+  for (int d = 0; d < 3; ++d) flat += r.extent(d) == 1;
+  return r.size() > 0 && flat == 1 ? std::optional(r) : std::nullopt;
 }
 
 IndexMap turn(IndexRange const& box, Orientation const& o) {
@@ -126,7 +122,7 @@ ScrambledMesh scramble(Mesh const& mesh, Scramble const& what) {
   for (Patch const& patch : mesh.patches)
     for (Part const& part : parts)
       if (part.old_zone == patch.zone)
-        if (auto const common = intersection(patch.range, part.box)) {
+        if (auto const common = common_face(patch.range, part.box)) {
           Patch p = patch;
           p.name += "_" + std::to_string(part.number);
           if (p.families.empty()) p.families = {patch.name};
@@ -149,9 +145,9 @@ ScrambledMesh scramble(Mesh const& mesh, Scramble const& what) {
     for (Part const& own : parts)
       for (Part const& donor : parts) {
         if (own.old_zone != face.zone || donor.old_zone != face.donor_zone) continue;
-        auto const mine = intersection(face.range, own.box);
+        auto const mine = common_face(face.range, own.box);
         if (!mine) continue;
-        if (auto const theirs = intersection(face.to_donor(*mine), donor.box))
+        if (auto const theirs = common_face(face.to_donor(*mine), donor.box))
           connect(face, own, donor, face.to_donor.inverse()(*theirs));
       }
   Interface1to1 plain;
@@ -160,7 +156,7 @@ ScrambledMesh scramble(Mesh const& mesh, Scramble const& what) {
     for (Part const& donor : parts)
       for (int axis = 0; axis < 3; ++axis)
         if (own.old_zone == donor.old_zone)
-          if (auto const common = intersection(face_of(own.box, axis, 1), face_of(donor.box, axis, 0)))
+          if (auto const common = common_face(face_of(own.box, axis, 1), face_of(donor.box, axis, 0)))
             connect(plain, own, donor, *common);
 
   if (what.reorder) random.shuffle(out.mesh.patches);

@@ -21,6 +21,9 @@ std::vector<Index> const& PlanShare::boundary_nodes() const { return state_->sha
 std::vector<BoundaryPlace> const& PlanShare::boundary_places() const { return state_->share.places; }
 std::vector<Vec3> const& PlanShare::boundary_displacement() const { return state_->share.displacement; }
 
+Bytes PlanShare::to_bytes() const { return gridmorph::to_bytes(state_->share); }
+PlanShare PlanShare::from_bytes(std::span<std::byte const> bytes) { return PlanAccess::of(share_from_bytes(bytes)); }
+
 Plan const& PlanAccess::chains(PlanShare const& share) { return share.state_->share.chains; }
 std::shared_ptr<SmoothingMap const> const& PlanAccess::smoothing(PlanShare const& share) {
   return share.state_->smoothing;
@@ -81,7 +84,7 @@ PlanShare share_out(Ranks const& ranks, HostInstance const& host, MorphPlan cons
     });
     for (Packet& packet : ranks.send(std::move(out))) own = std::move(packet.bytes);
   }
-  return together(ranks, [&] { return PlanAccess::of(share_from_bytes(own)); });
+  return together(ranks, [&] { return PlanShare::from_bytes(own); });
 }
 
 }  // namespace gridmorph

@@ -29,6 +29,10 @@ class PlanShare {
   [[nodiscard]] std::vector<BoundaryPlace> const& boundary_places() const;
   [[nodiscard]] std::vector<Vec3> const& boundary_displacement() const;
 
+  /// All of it as it lies in memory, for another process of the same program, and the share that these bytes are of.
+  [[nodiscard]] Bytes to_bytes() const;
+  [[nodiscard]] static PlanShare from_bytes(std::span<std::byte const> bytes);
+
  private:
   friend struct PlanAccess;
   struct State;
