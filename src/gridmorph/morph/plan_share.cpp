@@ -13,7 +13,6 @@ namespace gridmorph {
 
 struct PlanShare::State {
   ShareContents share;
-  std::shared_ptr<SmoothingMap const> smoothing;  ///< of `share`
 };
 
 Index PlanShare::n_nodes() const { return state_->share.chains.n_nodes; }
@@ -26,12 +25,10 @@ PlanShare PlanShare::from_bytes(std::span<std::byte const> bytes) { return PlanA
 
 Plan const& PlanAccess::chains(PlanShare const& share) { return share.state_->share.chains; }
 std::shared_ptr<SmoothingMap const> const& PlanAccess::smoothing(PlanShare const& share) {
-  return share.state_->smoothing;
+  return share.state_->share.smoothing;
 }
 PlanShare PlanAccess::of(ShareContents&& contents) {
-  auto state = std::make_shared<PlanShare::State>(PlanShare::State{std::move(contents), nullptr});
-  if (state->share.smoothing) state->smoothing = {state, &*state->share.smoothing};
-  return PlanShare(std::move(state));
+  return PlanShare(std::make_shared<PlanShare::State const>(PlanShare::State{std::move(contents)}));
 }
 
 namespace {
@@ -50,7 +47,7 @@ ShareContents contents_of(HostInstance const& host, MorphPlan const& plan, Mesh 
                           std::span<NodeBox const> boxes) {
   ShareContents out{
       share_of(host, *PlanAccess::chains(plan), mesh, boxes), plan.boundary_places(), plan.boundary_displacement(), {}};
-  if (plan.smoothing()) out.smoothing = share_of(*plan.smoothing(), mesh, boxes);
+  if (plan.smoothing()) out.smoothing = std::make_shared<SmoothingMap const>(share_of(*plan.smoothing(), mesh, boxes));
   return out;
 }
 

@@ -140,11 +140,16 @@ void carry(Way& way, T& v) {
 }
 template <class Way, Is<ShareContents> T>
 void carry(Way& way, T& v) {
-  bool has_smoothing = v.smoothing.has_value();
+  bool has_smoothing = v.smoothing != nullptr;
   carry_all(way, v.chains, v.places, v.displacement, has_smoothing);
   if (!has_smoothing) return;
-  if constexpr (!std::is_const_v<T>) v.smoothing.emplace();
-  carry(way, *v.smoothing);
+  if constexpr (std::is_const_v<T>) {
+    carry(way, *v.smoothing);
+  } else {
+    auto const smoothing = std::make_shared<SmoothingMap>();
+    carry(way, *smoothing);
+    v.smoothing = smoothing;
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <gridmorph/plan/plan.hpp>
 #include <gridmorph/plan/smoothing_map.hpp>
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,8 +16,8 @@ namespace gridmorph {
 struct ShareContents {
   Plan chains;  ///< without what plans say for reports
   std::vector<BoundaryPlace> places;
-  std::vector<Vec3> displacement;  ///< of the boundary, by the rules
-  std::optional<SmoothingMap> smoothing;
+  std::vector<Vec3> displacement;                 ///< of the boundary, by the rules
+  std::shared_ptr<SmoothingMap const> smoothing;  ///< null where the plan carries none
 };
 
 /// As it lies in memory.
