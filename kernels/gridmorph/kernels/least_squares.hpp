@@ -179,7 +179,8 @@ struct FramesFromMoments {
     AffineMotion sum = frame[k] + of_moment(moment[k], x[node(k)]);
     for (Index i = 0; i < Index(image.extent(0)); ++i) {
       WallImage const& to = image(i);
-      AffineMotion const g = of_moment(moment[(i + 1) * size() + k], to.rotation * x[node(k)] + to.translation);
+      AffineMotion const g =
+          of_moment(moment[(i + 1) * Index(node.extent(0)) + k], to.rotation * x[node(k)] + to.translation);
       Mat3 const back = kernels::transpose(to.rotation);
       sum += {back * g.u, back * (g.gradient * to.rotation)};
     }
