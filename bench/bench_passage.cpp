@@ -22,6 +22,7 @@
 
 #include <generators/passage.hpp>
 #include <generators/passage_motion.hpp>
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/mesh/deal_zones.hpp>
 #include <gridmorph/morph/morpher_access.hpp>
 #include <gridmorph/plan/prepare.hpp>
@@ -40,6 +41,13 @@ struct Turned {
   [[nodiscard]] auto operator<=>(Turned const&) const = default;
 };
 
+Index line_parameters_of(Plan const& plan) {
+  Index n = 0;
+  for (Stage const& stage : plan.stages) n += stage.lines.n_parameters;
+  for (SpreadPass const& pass : plan.spreads) n += pass.lines.n_parameters;
+  return n;
+}
+
 struct Passage {
   PassageOptions options;
   Mesh mesh;
@@ -51,10 +59,8 @@ struct Passage {
       : options(of_size(which.nodes)),
         mesh(make_passage(options)),
         prepared(plan(options, mesh, which.turn)),
-        boundary(prepared.boundary_displacement()) {
-    for (Stage const& stage : prepared.plan().stages) n_parameters += stage.lines.n_parameters;
-    for (SpreadPass const& pass : prepared.plan().spreads) n_parameters += pass.lines.n_parameters;
-  }
+        boundary(prepared.boundary_displacement()),
+        n_parameters(line_parameters_of(prepared.plan())) {}
   static PassageOptions of_size(std::int64_t nodes) {
     PassageOptions options;
     options.nodes = std::max<std::int64_t>(nodes, 10'000);
@@ -149,17 +155,11 @@ struct ApplyOfShare {
     Coordinates x(largest.n_nodes);
     Index n = 0;
     for (auto const& [zone, nodes] : own)
-      for (int k = nodes.begin[2]; k < nodes.end[2]; ++k)
-        for (int j = nodes.begin[1]; j < nodes.end[1]; ++j)
-          for (int i = nodes.begin[0]; i < nodes.end[0]; ++i)
-            x.set(n++, p.mesh.coordinates[p.mesh.zones[zone].node({i, j, k})]);
+      for_each_node(p.mesh.zones[zone], nodes, [&](Index node) { x.set(n++, p.mesh.coordinates[node]); });
     OnDevice<ExecutionSpace> const mesh(exec, x, p.boundary);
     auto const morpher = MorpherAccess::of(exec, largest, mesh);
     double const mean = time_iterations(state, exec, [&] { morpher.positions(exec, mesh.boundary, mesh); });
-    Index n_parameters = 0;
-    for (Stage const& stage : largest.stages) n_parameters += stage.lines.n_parameters;
-    for (SpreadPass const& pass : largest.spreads) n_parameters += pass.lines.n_parameters;
-    set_shares(state, exec, mean, n, 48 + 8 * double(n_parameters) / double(n));
+    set_shares(state, exec, mean, n, 48 + 8 * double(line_parameters_of(largest)) / double(n));
     state.counters["swept"] = double(swept) / double(nodes_swept(p.prepared.plan()));
   }
 };

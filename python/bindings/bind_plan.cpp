@@ -1,5 +1,6 @@
 #include "objects.hpp"
 
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/guard/guard.hpp>
 #include <gridmorph/morph/morph.hpp>
@@ -246,10 +247,7 @@ class PyPlan : public PyMorphs {
     Coordinates x(own.n_nodes());
     Index n = 0;
     for (NodeBox const& box : boxes)
-      for (int k = box.nodes.begin[2]; k < box.nodes.end[2]; ++k)
-        for (int j = box.nodes.begin[1]; j < box.nodes.end[1]; ++j)
-          for (int i = box.nodes.begin[0]; i < box.nodes.end[0]; ++i)
-            x.set(n++, mesh_->coordinates[mesh_->zones[box.zone].node({i, j, k})]);
+      for_each_node(mesh_->zones[box.zone], box.nodes, [&](Index node) { x.set(n++, mesh_->coordinates[node]); });
     return {std::move(own), std::move(x)};
   }
   void look_for_missing_rules(Motion const& motion) {

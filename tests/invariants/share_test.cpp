@@ -6,6 +6,7 @@
 #include "support/reduced.hpp"
 #include "support/transpose_check.hpp"
 
+#include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/morph/share_contents.hpp>
 #include <gridmorph/plan/share.hpp>
 
@@ -53,9 +54,7 @@ std::vector<std::vector<NodeBox>> dealt(Mesh const& mesh, int n, Random& random)
 std::vector<Index> nodes_of(Mesh const& mesh, std::span<NodeBox const> boxes) {
   std::vector<Index> out;
   for (NodeBox const& box : boxes)
-    for (int k = box.nodes.begin[2]; k < box.nodes.end[2]; ++k)
-      for (int j = box.nodes.begin[1]; j < box.nodes.end[1]; ++j)
-        for (int i = box.nodes.begin[0]; i < box.nodes.end[0]; ++i) out.push_back(mesh.zones[box.zone].node({i, j, k}));
+    for_each_node(mesh.zones[box.zone], box.nodes, [&](Index node) { out.push_back(node); });
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <gridmorph/mesh/first_box.hpp>
 #include <gridmorph/mesh/mesh.hpp>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,10 +19,15 @@ struct Part {
   int rank = -1;
   Index first_node = 0;  ///< of the part in the arrays of its rank; set by the Distribution
 
-  /// Where a node of the part stands in the arrays of its rank: i varies fastest.
+  /// From a node to the next along i, j, k in the arrays of its rank: i varies fastest.
+  [[nodiscard]] std::array<Index, 3> strides() const {
+    return {1, Index(nodes.extent(0)), Index(nodes.extent(0)) * nodes.extent(1)};
+  }
+  /// Where a node of the part stands there.
   [[nodiscard]] Index node(Index3 const& p) const {
-    return first_node + p[0] - nodes.begin[0] +
-           Index(nodes.extent(0)) * (p[1] - nodes.begin[1] + Index(nodes.extent(1)) * (p[2] - nodes.begin[2]));
+    auto const stride = strides();
+    Index3 const at = minus(p, nodes.begin);
+    return first_node + at[0] + at[1] * stride[1] + at[2] * stride[2];
   }
 };
 

@@ -7,12 +7,6 @@ namespace gridmorph::detail {
 
 namespace {
 
-bool meet(IndexRange const& a, IndexRange const& b) {
-  for (int d = 0; d < 3; ++d)
-    if (std::max(a.begin[d], b.begin[d]) >= std::min(a.end[d], b.end[d])) return false;
-  return true;
-}
-
 bool is_inside(IndexRange const& a, IndexRange const& b) {
   for (int d = 0; d < 3; ++d)
     if (a.begin[d] < b.begin[d] || a.end[d] > b.end[d]) return false;
@@ -23,7 +17,7 @@ bool is_inside(IndexRange const& a, IndexRange const& b) {
 std::vector<int> boxes_of(IndexRange const& region, std::span<int const> boxes, std::span<IndexRange const> all) {
   std::vector<int> out;
   for (int const b : boxes) {
-    if (!meet(all[b], region)) continue;
+    if (intersection(all[b], region).size() == 0) continue;
     out.push_back(b);
     if (is_inside(region, all[b])) break;
   }

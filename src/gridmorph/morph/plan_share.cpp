@@ -43,10 +43,10 @@ void require_whole_plan(MorphPlan const& plan, Mesh const& mesh) {
                       std::to_string(mesh.coordinates.size()));
 }
 
-ShareContents contents_of(HostInstance const& host, MorphPlan const& plan, Mesh const& mesh,
-                          std::span<NodeBox const> boxes) {
+ShareContents contents_of(HostInstance const& host, MorphPlan const& plan, std::vector<BoundaryPlace> places,
+                          Mesh const& mesh, std::span<NodeBox const> boxes) {
   ShareContents out{
-      share_of(host, *PlanAccess::chains(plan), mesh, boxes), plan.boundary_places(), plan.boundary_displacement(), {}};
+      share_of(host, *PlanAccess::chains(plan), mesh, boxes), std::move(places), plan.boundary_displacement(), {}};
   if (plan.smoothing()) out.smoothing = std::make_shared<SmoothingMap const>(share_of(*plan.smoothing(), mesh, boxes));
   return out;
 }
@@ -58,25 +58,28 @@ constexpr int ranks_per_round = 16;
 
 PlanShare share(HostInstance const& host, MorphPlan const& plan, Mesh const& mesh, std::span<NodeBox const> boxes) {
   require_whole_plan(plan, mesh);
-  return PlanAccess::of(contents_of(host, plan, mesh, boxes));
+  return PlanAccess::of(contents_of(host, plan, plan.boundary_places(), mesh, boxes));
 }
 
 PlanShare share_out(Ranks const& ranks, HostInstance const& host, MorphPlan const* plan, Mesh const* mesh,
                     std::span<NodeBox const> boxes) {
   std::vector<Bytes> const asked = ranks.gather(std::as_bytes(boxes));
   bool const has_plan = ranks.rank() == 0;
+  std::vector<BoundaryPlace> places;
   together(ranks, [&] {
     if (!has_plan) return;
     if (plan == nullptr || mesh == nullptr)
       throw ConfigError("gridmorph::share_out: rank 0 has to have the plan and its mesh; they are null there");
     require_whole_plan(*plan, *mesh);
+    places = plan->boundary_places();
   });
   Bytes own;
   for (int first = 0; first < ranks.size(); first += ranks_per_round) {
     std::vector<Packet> out = together(ranks, [&] {
       std::vector<Packet> packets;
       for (int r = first; has_plan && r < std::min(first + ranks_per_round, ranks.size()); ++r)
-        packets.push_back({r, to_bytes(contents_of(host, *plan, *mesh, from_bytes<NodeBox>(asked[std::size_t(r)])))});
+        packets.push_back(
+            {r, to_bytes(contents_of(host, *plan, places, *mesh, from_bytes<NodeBox>(asked[std::size_t(r)])))});
       return packets;
     });
     for (Packet& packet : ranks.send(std::move(out))) own = std::move(packet.bytes);

@@ -1,5 +1,6 @@
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/kernels/kokkos_compat.hpp>
+#include <gridmorph/mesh/distribution.hpp>
 #include <gridmorph/plan/blocks/host_lines.hpp>
 #include <gridmorph/plan/share.hpp>
 
@@ -12,22 +13,7 @@
 namespace gridmorph {
 namespace {
 
-/// A box of the share, with the number of its first node there.
-struct OwnBox {
-  IndexRange nodes;
-  Index first = 0;
-
-  [[nodiscard]] std::array<Index, 3> strides() const {
-    return {1, Index(nodes.extent(0)), Index(nodes.extent(0)) * nodes.extent(1)};
-  }
-  [[nodiscard]] Index node(Index3 const& p) const {
-    auto const stride = strides();
-    Index3 const at = minus(p, nodes.begin);
-    return first + at[0] + at[1] * stride[1] + at[2] * stride[2];
-  }
-};
-
-/// The boxes by zone.
+/// The boxes by zone, with the numbers of their first nodes in the share; of no rank.
 class OwnBoxes {
  public:
   OwnBoxes(BoundaryMesh const& mesh, std::span<NodeBox const> boxes) : of_zone_(mesh.zones.size()) {
@@ -40,24 +26,17 @@ class OwnBoxes {
         throw ConfigError("a share asks for nodes " + to_string(box.nodes) + " of zone '" + zone.name +
                           "', which has " + to_string(IndexRange{{0, 0, 0}, zone.extent}) +
                           "; name a box of nodes within the zone");
-      of_zone_[box.zone].push_back({box.nodes, n_nodes_});
+      of_zone_[box.zone].push_back({box.zone, box.nodes, -1, n_nodes_});
       n_nodes_ += box.nodes.size();
     }
   }
   [[nodiscard]] Index n_nodes() const { return n_nodes_; }
-  [[nodiscard]] std::vector<OwnBox> const& in_zone(int zone) const { return of_zone_[zone]; }
+  [[nodiscard]] std::vector<Part> const& in_zone(int zone) const { return of_zone_[zone]; }
 
  private:
-  std::vector<std::vector<OwnBox>> of_zone_;
+  std::vector<std::vector<Part>> of_zone_;
   Index n_nodes_ = 0;
 };
-
-/// Calls visit(place, slot) for all nodes of a copy or a sweep, whose slots these are.
-template <class Visit>
-void for_slots(Index first, Index stride_p, Index stride_q, int n_p, int n_q, Visit const& visit) {
-  for (int q = 0; q < n_q; ++q)
-    for (int p = 0; p < n_p; ++p) visit(std::size_t(first + p * stride_p + q * stride_q));
-}
 
 /// Appends entries begin ... begin + n of a list, zeros where it is shorter: what few chains need is not there for all.
 template <class T>
@@ -159,10 +138,9 @@ std::optional<kernels::NodeCopy> cut(kernels::NodeCopy copy, KeptLines const& ke
       }
   if (!p.any()) return {};
   copy.source += p.begin * copy.source_stride_p + q.begin * copy.source_stride_q;
-  Index const first = copy.destination + p.begin * copy.destination_stride_p + q.begin * copy.destination_stride_q;
+  copy.destination += p.begin * copy.destination_stride_p + q.begin * copy.destination_stride_q;
   copy.n_p = p.size();
   copy.n_q = q.size();
-  copy.destination = first;
   return copy;
 }
 
@@ -256,7 +234,7 @@ class Sharing {
       kernels::VolumeBox const& box = whole_.boxes[b];
       int const z = mesh_.zone_of(box.first);
       Index3 const at = mesh_.zones[z].index(box.first);
-      for (OwnBox const& own : own_.in_zone(z)) {
+      for (Part const& own : own_.in_zone(z)) {
         IndexRange const nodes = intersection(own.nodes, {at, {at[0] + box.n[0], at[1] + box.n[1], at[2] + box.n[2]}});
         if (nodes.size() < 1) continue;
         cuts_of_[b].push_back({int(out_.boxes.size()), minus(nodes.begin, at)});
@@ -280,7 +258,7 @@ class Sharing {
       };
       Index3 const p_step = along(copy.destination_stride_p, copy.n_p),
                    q_step = along(copy.destination_stride_q, copy.n_q);
-      for (OwnBox const& own : own_.in_zone(z)) {
+      for (Part const& own : own_.in_zone(z)) {
         int p[2] = {0, copy.n_p}, q[2] = {0, copy.n_q};
         if (!limit(first, p_step, q_step, own.nodes, p, q)) continue;
         kernels::NodeCopy part = copy;
@@ -296,8 +274,7 @@ class Sharing {
           part.destination_stride_p += p_step[d] * stride[d];
           part.destination_stride_q += q_step[d] * stride[d];
         }
-        for_slots(part.source, part.source_stride_p, part.source_stride_q, part.n_p, part.n_q,
-                  [&](std::size_t slot) { needed_[slot] = 1; });
+        need(part);
         out_.skeleton_nodes.push_back(part);
       }
     }
@@ -344,9 +321,11 @@ class Sharing {
         if (kept.chains[chain_of_side_node(stage.sides, copy.destination)].any()) need(copy);
     }
   }
+  /// The slots that a copy reads.
   void need(kernels::NodeCopy const& copy) {
-    for_slots(copy.source, copy.source_stride_p, copy.source_stride_q, copy.n_p, copy.n_q,
-              [&](std::size_t slot) { needed_[slot] = 1; });
+    for (int q = 0; q < copy.n_q; ++q)
+      for (int p = 0; p < copy.n_p; ++p)
+        needed_[std::size_t(copy.source + p * copy.source_stride_p + q * copy.source_stride_q)] = 1;
   }
 
   template <class StageOrPass>
@@ -594,7 +573,7 @@ SmoothingMap share_of(SmoothingMap const& whole, BoundaryMesh const& mesh, std::
   auto const for_copies = [&](Index node, auto const& visit) {
     int const z = mesh.zone_of(node);
     Index3 const at = mesh.zones[z].index(node);
-    for (OwnBox const& box : own.in_zone(z))
+    for (Part const& box : own.in_zone(z))
       if (box.nodes.contains(at)) visit(box.node(at));
   };
   std::vector<std::pair<Index, std::size_t>> moved;  // node here, entry there
