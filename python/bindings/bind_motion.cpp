@@ -2,6 +2,7 @@
 
 #include <gridmorph/mapping/point_field.hpp>
 
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -15,10 +16,10 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-PyMotion read(std::string const& path) {
+PyMotion read(std::string const& path, ParameterValues const& values) {
   PyMotion out{Session::get(), {}};
   Call const call;
-  out.file = read_case_file(std::filesystem::path(path));
+  out.file = read_case_file(std::filesystem::path(path), values);
   return out;
 }
 
@@ -26,6 +27,12 @@ PyMotion parse(std::string const& text, std::string const& name) {
   PyMotion out{Session::get(), {}};
   Call const call;
   out.file = parse_case_file(text, name);
+  return out;
+}
+
+ParameterValues parameters_of(PyMotion const& self) {
+  ParameterValues out;
+  for (Parameter const& p : self.file.parameters) out[p.name] = p.value;
   return out;
 }
 
@@ -109,6 +116,7 @@ void bind_motion(nb::module_& m) {
           "Raises one ConfigError that "
           "lists every problem, by lines of the TOML text of the tables.")
       .def_static("_read", &read)
+      .def_prop_ro("parameters", &parameters_of, "[parameters] of the case file, {name: value}.")
       .def("_function", &add_function)
       .def("_field", &add_field)
       .def("_rigid", &add_rigid)

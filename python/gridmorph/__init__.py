@@ -144,9 +144,9 @@ _attach(Mesh, read=staticmethod(_read), from_blocks=staticmethod(_from_blocks), 
 # --------------------------------------------------------------------------------------------------------------- motions
 
 
-def _read_motion(path: str | os.PathLike[str]) -> Motion:
-    """The rules and options of a case file. Raises one ConfigError that lists every problem of it."""
-    return Motion._read(os.fspath(path))
+def _read_motion(path: str | os.PathLike[str], parameters: typing.Mapping[str, float] | None = None) -> Motion:
+    """The rules and options of a case file, with these values of its [parameters]. Raises one ConfigError that lists every problem of it."""
+    return Motion._read(os.fspath(path), {name: float(value) for name, value in (parameters or {}).items()})
 
 
 def _motion_text(tables, more):

@@ -114,14 +114,17 @@ std::string case_with(CaseKey const& key, std::string const& rule) {
   if (!(table == "mesh" && key.key == "input")) text += "input = \"in.cgns\"\n";
   if (table != "mesh" || !example.starts_with("axis")) text += "axis = \"x\"\n";
   if (table == "mesh") text += example;
-  if (table == "constants") text += example;
+  if (table == "constants" || table == "parameters") text += example;
+  // A parameter that nothing uses is an error, and so is a sweep of none.
+  if (table == "sweep") text += "[parameters]\nlean = { value = 0, range = [-1, 1] }\n";
+  if (table == "parameters" || table == "sweep") text += "[constants]\nslope = \"2 * lean\"\n";
   text += "[[motion]]\n";
   if (!(common && key.key == "patches")) text += "patches = [\"blade\"]\n";
   if (!(common && key.key == "rule")) text += "rule = \"" + (rule.empty() ? "fixed" : rule) + "\"\n";
   if (common && rule == "rigid") text += "translation = [0.1, 0, 0]\n";
   if (table == "sequence") text += "modes = [ { file = \"mode.csv\" } ]\n";
   if (table == "motion") text += example;
-  if (!key.table.empty() && table != "mesh" && table != "motion" && table != "constants")
+  if (!key.table.empty() && table != "mesh" && table != "motion" && table != "constants" && table != "parameters")
     text += "[" + table + "]\n" + example;
   if (example.find("frequency") != std::string::npos || example.find("amplitude = [[") != std::string::npos)
     text += "[sequence]\nsteps = 4\nperiod = 1\n";

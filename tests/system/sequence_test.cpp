@@ -301,5 +301,81 @@ TEST_F(SequenceRun, ProblemsAreKnownBeforeAnyWork) {
   expect_bad_input(gridmorph("morph case.toml"), {"the same file"});
 }
 
+/// The blade is shifted along the axis and turned about it.
+std::string const parametric =
+    "[mesh]\ninput = \"passage.cgns\"\noutput = \"one.cgns\"\naxis = \"x\"\n"
+    "[parameters]\nshift = { value = 0, range = [-0.01, 0.01], unit = \"m\" }\nturn = { value = 0, range = [-3, 60] }\n"
+    "[[motion]]\npatches = [\"blade\"]\nrule = \"rigid\"\ntranslation = [\"shift\", 0, 0]\nrotation = { angle_deg = "
+    "\"turn\" }\n"
+    "[[motion]]\npatches = [\"hub\", \"case\"]\nrule = \"slip\"\nsurface = \"revolution\"\n";
+std::string swept(std::string const& sweep) {
+  std::string text = parametric;
+  return text.erase(text.find("output"), std::string_view("output = \"one.cgns\"\n").size()) + "[sweep]\n" + sweep;
+}
+
+TEST_F(SequenceRun, ASweepMakesTheMeshOfEachDesign) {
+  // A blade that shifts along the axis leaves the slopes of hub and case by some of its way.
+  std::string const guard = "[guard]\nmax_trim = 0.1\n";
+  write("one.toml", parametric + guard);
+  write("sweep.toml", swept("designs = \"designs.csv\"\noutput = \"d_{design}.cgns\"\n") + guard);
+  write("designs.csv", "turn, shift\n0.1, 0.0005\n0, 0\n-0.2, -0.001\n");
+  Outcome const run = gridmorph("morph sweep.toml --report sweep.json --html sweep.html");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("design         shift          turn"), std::string::npos) << run.out;
+  auto const report = nlohmann::json::parse(contents(path("sweep.json")));
+  auto const& designs = report["sequence"]["steps"];
+  ASSERT_EQ(designs.size(), 3U);
+  EXPECT_EQ(designs[2]["parameters"], (nlohmann::json{{"shift", -0.001}, {"turn", -0.2}}));
+  EXPECT_FALSE(designs[2].contains("time"));
+  EXPECT_EQ(report["parameters"]["shift"]["unit"], "m");
+  for (int d = 1; d <= 3; ++d) {
+    auto const& p = designs[d - 1]["parameters"];
+    ASSERT_EQ(gridmorph(fmt::format("morph one.toml --set shift={} --set turn={}", p["shift"].get<double>(),
+                                    p["turn"].get<double>()))
+                  .status,
+              0);
+    expect_same(mesh("one.cgns"), mesh(fmt::format("d_{}.cgns", d)));
+  }
+  expect_same(mesh("d_2.cgns"), mesh("passage.cgns"));
+  std::string const page = contents(path("sweep.html"));
+  EXPECT_NE(page.find("The 3 designs"), std::string::npos);
+  EXPECT_NE(page.find("design 3, shift -0.001, turn -0.2"), std::string::npos);
+  Outcome const predicted = gridmorph("plan sweep.toml");
+  ASSERT_EQ(predicted.status, 0) << predicted.err;
+  EXPECT_NE(predicted.out.find("of 3 comes out worst"), std::string::npos) << predicted.out;
+}
+
+TEST_F(SequenceRun, ASweepLeavesOutDesignsWhoseCellsAreInverted) {
+  write("sweep.toml", swept("designs = \"designs.csv\"\n") + "[guard]\nretry = false\n");
+  write("designs.csv", "turn\n1\n55\n2\n");
+  Outcome const run = gridmorph("morph sweep.toml -o d_{design}.cgns --html sweep.html");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_NE(run.out.find("not written: 1 of 3 designs, whose cells are inverted: 2"), std::string::npos) << run.out;
+  EXPECT_TRUE(std::filesystem::exists(path("d_1.cgns")) && std::filesystem::exists(path("d_3.cgns")));
+  EXPECT_FALSE(std::filesystem::exists(path("d_2.cgns")));
+  EXPECT_NE(contents(path("sweep.html")).find("Some designs are inverted: the others are written"), std::string::npos);
+  // None that is valid: nothing is written, as of a sequence.
+  write("designs.csv", "turn\n55\n58\n");
+  Outcome const none = gridmorph("morph sweep.toml -o e_{design}.cgns");
+  EXPECT_EQ(none.status, 4) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(path("e_1.cgns")));
+  EXPECT_NE(none.err.find("all designs have cells"), std::string::npos) << none.err;
+}
+
+TEST_F(SequenceRun, WhatIsNoSweepIsRefused) {
+  write("sweep.toml", swept("latin_hypercube = 2\n"));
+  auto const says = [&](std::string const& command, std::string const& what) {
+    Outcome const run = gridmorph(command);
+    EXPECT_EQ(run.status, 2) << command;
+    EXPECT_NE(run.err.find(what), std::string::npos) << run.err;
+  };
+  says("morph sweep.toml", "add output = \"design_{design}.cgns\" to [sweep]");
+  says("morph sweep.toml -o d.cgns", "has no {design} in its name");
+  says("morph sweep.toml -o d_{design}.cgns --fraction 0.5", "[sweep]");
+  says("morph sweep.toml -o d_{design}.cgns --set shfit=1", "did you mean 'shift'");
+  says("morph sweep.toml -o d_{design}.cgns --set shift", "write it as name=value");
+  says("morph sweep.toml -o d_{design}.cgns --set shift=1", "outside its range");
+}
+
 }  // namespace
 }  // namespace gridmorph::test

@@ -1,6 +1,7 @@
 #include <gridmorph/case/case_file.hpp>
 #include <gridmorph/case/detail/case_parts.hpp>
 #include <gridmorph/case/detail/law_reader.hpp>
+#include <gridmorph/case/detail/parameter_reader.hpp>
 #include <gridmorph/case/detail/rule_reader.hpp>
 #include <gridmorph/case/detail/table_reader.hpp>
 #include <gridmorph/core/error.hpp>
@@ -29,7 +30,6 @@ using casefile::TableReader;
 /// A case file is written by hand; anything larger is some other file.
 constexpr std::uintmax_t largest_case_file = 4u << 20;
 /// Steps are numbered with up to five digits.
-constexpr int largest_sequence = 99999;
 
 void read_mesh_table(TableReader& root, CaseFile& out) {
   root.require("mesh", "[mesh] with input = \"mesh.cgns\"");
@@ -103,8 +103,8 @@ bool changes_with_time(CaseFile const& out) {
                                                      [&](WheelBlade const& blade) { return any(blade.timed); }));
 }
 
-/// Returns the constants of all formulas.
-std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
+/// constants: of all formulas.
+void read_motion(TableReader& root, std::map<std::string, double> const& constants, CaseFile& out) {
   if (auto const word = root.choice("default", {"type", "error"})) out.motion.strict = *word == 1;
   if (auto conformity = root.table("conformity")) {
     if (auto const tolerance = conformity->number("tolerance")) {
@@ -115,8 +115,7 @@ std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
     }
     conformity->finish();
   }
-  casefile::RuleContext shared{out.axis, {}, out.sequence.has_value()};
-  casefile::read_constants(root, "constants", shared.constants);
+  casefile::RuleContext shared{out.axis, constants, out.sequence.has_value()};
   for (auto& table : root.tables("motion")) casefile::read_motion_rule(table, shared, out);
   for (auto& table : root.tables("region")) {
     InnerRegion region = casefile::read_region(table, out.axis);
@@ -131,7 +130,6 @@ std::map<std::string, double> read_motion(TableReader& root, CaseFile& out) {
     root.context().problem(root.line("sequence"),
                            "[sequence]: no rule changes with time, so that all steps would be alike; give a rule an "
                            "amplitude over time, use t or step in a formula, or add modes to a rule \"field\"");
-  return shared.constants;
 }
 
 BoundaryLayer read_boundary_layer(TableReader& table) {
@@ -366,32 +364,68 @@ std::optional<std::filesystem::path> CaseDocument::mesh() const {
 
 namespace {
 
-CaseFile read(CaseDocument const& document, CaseKeyUse* asked) {
+/// [constants] as they stand; those that are expressions are true.
+std::map<std::string, bool> given_constants(toml::value const& root) {
+  std::map<std::string, bool> out;
+  if (auto const at = root.as_table().find("constants"); at != root.as_table().end() && at->second.is_table())
+    for (auto const& [name, value] : at->second.as_table()) out[name] = value.is_string();
+  return out;
+}
+
+/// Names that formulas of the plan may use: of a sweep, whose designs have one plan, those that no parameter changes.
+std::map<std::string, double> constants_of_plan(toml::value const& root, CaseFile const& file,
+                                                std::map<std::string, double> names) {
+  if (!file.sequence || !file.sequence->is_sweep()) return names;
+  for (Parameter const& p : file.parameters) names.erase(p.name);
+  for (auto const& [name, is_expression] : given_constants(root))
+    if (is_expression) names.erase(name);
+  return names;
+}
+
+CaseFile read(CaseDocument const& document, ParameterValues const& values, CaseKeyUse* asked) {
   Context context{document.path().string(), document.path().parent_path(), {}, asked};
   CaseFile out;
   out.source = document.path();
   context.lines = document.root().text.lines;
   TableReader root(context, document.root().text.root, "");
+  casefile::read_parameters(root, values, out);
+  // What constants are made of are parameters alone: tables have no order.
+  auto constants = context.names;
+  casefile::read_constants(root, "constants", constants);
+  for (Parameter const& p : out.parameters)
+    if (given_constants(document.root().text.root).contains(p.name))
+      root.problem("constants", fmt::format("names '{}', which is one of [parameters]; rename one of the two", p.name));
+  context.names = constants;
   read_mesh_table(root, out);
   read_sequence(root, out);
-  auto const constants = read_motion(root, out);
-  read_plan(root, constants, out);
-  casefile::read_near_field(root, constants, out);
+  read_motion(root, constants, out);
+  casefile::read_sweep(root, out);
+  auto const of_plan = constants_of_plan(document.root().text.root, out, std::move(constants));
+  read_plan(root, of_plan, out);
+  casefile::read_near_field(root, of_plan, out);
   read_results(root, out);
+  casefile::require_one_plan(context, out);
   root.finish();
   context.problems.throw_if_any<ConfigError>();
   out.files = std::move(context.files);
   out.notes = std::move(context.notes);
   out.given.assign(context.given.begin(), context.given.end());
+  out.motion_for = [document, values](ParameterValues const& other) {
+    ParameterValues now = other;
+    now.insert(values.begin(), values.end());
+    return read(document, now, nullptr).motion;
+  };
   return out;
 }
 
 }  // namespace
 
-CaseFile read_case_file(CaseDocument const& document) { return read(document, nullptr); }
+CaseFile read_case_file(CaseDocument const& document, ParameterValues const& values) {
+  return read(document, values, nullptr);
+}
 
 CaseFile parse_case_file(std::string const& text, std::filesystem::path const& path, CaseKeyUse* asked) {
-  return read(CaseDocument(text, path), asked);
+  return read(CaseDocument(text, path), {}, asked);
 }
 
 Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& when, double factor) {
@@ -401,7 +435,21 @@ Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& whe
   return timed.at(share * factor, when);
 }
 
+bool one_file_per_step(SequenceOptions const& options) {
+  return options.output.filename().string().find(options.is_sweep() ? "{design}" : "{step}") != std::string::npos;
+}
+
 Motion motion_at(CaseFile const& case_file, Moment const& when) {
+  if (case_file.sequence && case_file.sequence->is_sweep()) {
+    ParameterValues const values = case_file.sequence->values_at(when.step - 1);
+    try {
+      return case_file.motion_for(values);
+    } catch (ConfigError const& e) {
+      std::string design;
+      for (auto const& [name, value] : values) design += fmt::format(", {} = {}", name, value);
+      throw ConfigError(fmt::format("design {}{}:\n{}", when.step, design, e.what()));
+    }
+  }
   Motion motion = case_file.motion;
   for (std::size_t r = 0; r < case_file.timed.size(); ++r)
     if (case_file.timed[r].changes) motion.rules[r].rule = rule_at(case_file.timed[r], motion.rules[r].where, when);

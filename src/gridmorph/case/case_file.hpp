@@ -11,9 +11,11 @@
 #include <gridmorph/quality/quality.hpp>
 
 #include <algorithm>
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -89,7 +91,16 @@ struct FieldUse {
       {};  ///< of the rule, where its displacement is taken back; with its first field
 };
 
-/// [sequence]: meshes over time.
+/// [parameters]: a number that expressions of the case file know by its name.
+struct Parameter {
+  std::string name;
+  double value = 0;
+  std::optional<std::array<double, 2>> range;  ///< lowest and highest
+  std::string unit;                            ///< for people
+};
+using ParameterValues = std::map<std::string, double>;
+
+/// [sequence]: meshes over time; or [sweep]: meshes of designs, whose steps are 1, 2, ... and which have no time.
 struct SequenceOptions {
   int steps = 0;
   double period = 1;             ///< [time]
@@ -97,14 +108,32 @@ struct SequenceOptions {
   bool include_end = false;      ///< whether the last step is at the end of all periods, or a step short of it
   std::vector<double> times;     ///< of the steps, ascending; empty: spread evenly
   std::filesystem::path output;  ///< with "{step}" in its name: one file per step; without: one file with a series
+  std::vector<std::string> parameters;       ///< of a sweep: their names
+  std::vector<std::vector<double>> designs;  ///< of a sweep: per step the value of each
 
+  [[nodiscard]] bool is_sweep() const { return !parameters.empty(); }
+  /// How people call a step.
+  [[nodiscard]] char const* step_word() const { return is_sweep() ? "design" : "step"; }
+  /// Of a sweep.
+  [[nodiscard]] ParameterValues values_at(int step) const {
+    ParameterValues out;
+    for (std::size_t p = 0; p < parameters.size(); ++p) out[parameters[p]] = designs[step][p];
+    return out;
+  }
   /// The periods passed at step 0 ... steps - 1.
   [[nodiscard]] double periods_at(int step) const {
     return times.empty() ? periods * step / (include_end && steps > 1 ? steps - 1 : steps) : times[step] / period;
   }
-  [[nodiscard]] double time_at(int step) const { return times.empty() ? period * periods_at(step) : times[step]; }
+  [[nodiscard]] double time_at(int step) const {
+    return is_sweep() ? step + 1 : times.empty() ? period * periods_at(step) : times[step];
+  }
   [[nodiscard]] Moment moment(int step) const { return {periods_at(step), time_at(step), step + 1}; }
 };
+
+/// Most steps.
+inline constexpr int largest_sequence = 99999;
+/// Whether the output names one file per step.
+bool one_file_per_step(SequenceOptions const& options);
 
 /// [[clearance]]: how far the tips of blades are from a wall.
 struct ClearanceCase {
@@ -157,9 +186,13 @@ struct CaseFile {
   std::vector<FieldUse> fields;
   std::vector<ClearanceCase> clearances;
   std::vector<ShockFollow> shock_follows;
-  std::optional<WheelCase> wheel;  ///< [wheel], for `gridmorph wheel`
-  std::vector<TimedRule> timed;    ///< per rule of `motion`
-  std::optional<SequenceOptions> sequence;
+  std::optional<WheelCase> wheel;           ///< [wheel], for `gridmorph wheel`
+  std::vector<TimedRule> timed;             ///< per rule of `motion`
+  std::optional<SequenceOptions> sequence;  ///< or a sweep
+  std::vector<Parameter> parameters;        ///< by name
+  /// The rules for other values of parameters, the others' as they stand; the file is read again, tables and targets
+  /// that it names too. Throws ConfigError where a value is none that the rules can have.
+  std::function<Motion(ParameterValues const& values)> motion_for;
   std::vector<std::filesystem::path> files;  ///< tables, targets, models, ... that its keys name and that are read
   std::vector<std::string> notes;            ///< what was taken that no key says
   std::vector<GivenKey>
@@ -169,8 +202,9 @@ struct CaseFile {
 /// A rule at a moment, times a factor. Throws MotionError where its amplitude is not finite; `where`: of the rule.
 Rule rule_at(TimedRule const& timed, std::string const& where, Moment const& when, double factor = 1);
 
-/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand.
-/// Throws MotionError where an amplitude is not finite.
+/// The rules of the case file at a moment: those that change with time as they are then, all others as they stand; of a
+/// sweep those of the design. Throws MotionError where an amplitude is not finite, ConfigError where a design cannot be
+/// made.
 Motion motion_at(CaseFile const& case_file, Moment const& when);
 
 /// The rules with every amplitude times `share`: rigid motions turn by that share of their angle, targets are
@@ -200,9 +234,12 @@ class CaseDocument {
 };
 
 /// What a case file says, with the displacement files that it names. Throws one ConfigError that lists every problem,
-/// each as "file:line: what, found, what to do". Cost: O(size of the files), O(n log n) for point clouds.
-CaseFile read_case_file(CaseDocument const& document);
-inline CaseFile read_case_file(std::filesystem::path const& path) { return read_case_file(CaseDocument(path)); }
+/// each as "file:line: what, found, what to do". values: of parameters, in place of the file's. Cost: O(size of the
+/// files), O(n log n) for point clouds.
+CaseFile read_case_file(CaseDocument const& document, ParameterValues const& values = {});
+inline CaseFile read_case_file(std::filesystem::path const& path, ParameterValues const& values = {}) {
+  return read_case_file(CaseDocument(path), values);
+}
 
 /// As what the reader reads a key: "string", "number", "whole number", "true or false", "list of numbers", "[x, y, z]",
 /// "string or list", "table", "list of tables"; the words that it chooses from.

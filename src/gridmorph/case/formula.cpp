@@ -304,6 +304,11 @@ bool is_free_formula_name(std::string const& name) {
   return parser.GetConst().count(name) == 0 && parser.GetFunDef().count(name) == 0;
 }
 
+bool uses_name(std::string const& expression, std::string const& name) {
+  auto const names = names_in(expression);
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 bool uses_axis(std::string const& expression) {
   auto const names = names_in(expression);
   return std::any_of(names.begin(), names.end(),
@@ -354,6 +359,24 @@ std::function<double(Moment const& when)> make_time_formula(FormulaComponent con
     rule(1, when).function({&origin, 1}, {&value, 1});
     return value.x;
   };
+}
+
+std::optional<double> value_of_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,
+                                       Problems& problems) {
+  std::size_t const before = problems.messages().size();
+  refuse_variables(formula, {}, "parameters and constants alone", problems);
+  auto const value =
+      make_formula_in_time(FormulaFrame::cartesian, {formula, {}, {}}, constants, Axis{}, problems)(1, {});
+  if (problems.messages().size() > before) return std::nullopt;
+  Vec3 const origin;
+  Vec3 out;
+  try {
+    value.function({&origin, 1}, {&out, 1});
+  } catch (MotionError const& e) {
+    problems.add(e.what());
+    return std::nullopt;
+  }
+  return out.x;
 }
 
 HeightAt make_height_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,

@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -63,9 +64,21 @@ std::function<double(Moment const& when)> make_time_formula(FormulaComponent con
 std::function<double(double t)> make_law_formula(FormulaComponent const& formula,
                                                  std::map<std::string, double> const& constants, Problems& problems);
 
+/// The value of an expression of constants alone. Problems are added as above, also where the value is not finite; then
+/// there is none.
+std::optional<double> value_of_formula(FormulaComponent const& formula, std::map<std::string, double> const& constants,
+                                       Problems& problems);
+
+/// Whether an expression has the name in it.
+bool uses_name(std::string const& expression, std::string const& name);
+
 /// Whether a name can be a constant of a formula: letters, digits and '_', not starting with a digit, and neither a
 /// variable, a built-in constant nor a function.
 bool is_free_formula_name(std::string const& name);
+/// What to say of others.
+inline constexpr char const* not_a_constant =
+    "cannot be the name of a constant; use letters, digits and '_', and none of x, y, z, r, theta, axial, t, step, pi, "
+    "deg or the functions";
 
 /// Whether an expression uses t or step, that is, needs a sequence.
 bool uses_time(std::string const& expression);

@@ -25,9 +25,12 @@ class Ignored {
       of_structured();
     if (use_.run == CaseUse::Run::wheel) of_wheel();
     if (use_.run == CaseUse::Run::sequence) refuse("output", "stages", "is for one morph, and a sequence writes none");
+    bool const is_sweep = case_.sequence && case_.sequence->is_sweep();
     if (use_.run == CaseUse::Run::sequence)
-      refuse("mesh", "output", "names one file, and the meshes of a sequence go where output in [sequence] says");
-    if (!case_.sequence && !(use_.run == CaseUse::Run::wheel && has_wave()))
+      refuse("mesh", "output",
+             fmt::format("names one file, and the meshes of a {0} go where output in [{0}] says",
+                         is_sweep ? "sweep" : "sequence"));
+    if ((!case_.sequence || is_sweep) && !(use_.run == CaseUse::Run::wheel && has_wave()))
       refuse("motion modes", "harmonic", "says how often a shape oscillates in time, and there is no [sequence]");
     fields();
     std::stable_sort(lines_.begin(), lines_.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
@@ -75,6 +78,7 @@ class Ignored {
     if (case_.find_blocks.value_or(false))
       refuse("mesh", "blocks", "is for `gridmorph morph`, and wheels take a mesh as it is");
     refuse("", "region", "is for `gridmorph morph`, and passages of a wheel are morphed without regions");
+    refuse("", "sweep", "is for `gridmorph morph`: a wheel has one design, with --set another one");
     std::string const why = "is for `gridmorph morph`, and passages of a wheel have one plan";
     if (use_.unstructured && !case_.background) refuse("guard", "steps", why);
     refuse("output", "stages", why);

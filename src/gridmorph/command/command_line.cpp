@@ -77,6 +77,27 @@ CLI::Validator const& share() {
   return between;
 }
 
+/// "stagger=2.5" into a parameter and its value.
+void add_value(std::string const& text, ParameterValues& out) {
+  auto const sign = text.find('=');
+  auto const value = sign == std::string::npos ? std::nullopt : finite_number(text.substr(sign + 1));
+  if (sign == 0 || !value)
+    throw CLI::ValidationError("--set " + text, "write it as name=value, a parameter and a number: --set stagger=2.5");
+  out[text.substr(0, sign)] = *value;
+}
+
+void add_parameters(CLI::App& command, CommandLine& out) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&out](std::vector<std::string> const& all) {
+            for (std::string const& text : all) add_value(text, out.parameters);
+          },
+          "Value of a parameter, instead of the case file's; may be repeated")
+      ->allow_extra_args(false)
+      ->option_text("NAME=VALUE");
+}
+
 CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   auto* morph = app.add_subcommand("morph", "Morph a mesh as a case file says");
   morph->add_option("case", out.input, "Case file (TOML)")->required();
@@ -86,6 +107,7 @@ CLI::App* add_morph(CLI::App& app, CommandLine& out) {
   add_quality(*morph, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
   morph->add_option("--fraction", out.fraction, "Share of the motion: every rule at that share of its amplitude")
       ->check(share());
+  add_parameters(*morph, out);
   morph->add_flag("--dry-run", out.dry_run, "Check everything and print the plan; write nothing");
   return morph;
 }
@@ -97,6 +119,7 @@ CLI::App* add_wheel(CLI::App& app, CommandLine& out) {
   wheel->add_option("-r,--report", out.report, "Report (JSON), instead of the case file's");
   wheel->add_option("--html", out.page, "Report as one page with pictures (HTML), instead of the case file's html");
   add_quality(*wheel, out, "How much is measured, instead of the case file's: full, fast (a verdict), auto");
+  add_parameters(*wheel, out);
   return wheel;
 }
 
@@ -373,6 +396,7 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
   commands.emplace_back(add_inspect(app, out), Command::inspect);
   auto* plan = app.add_subcommand("plan", "Print stages and chains in order, with the reason for each rank");
   plan->add_option("case", out.input, "Case file (TOML)")->required();
+  add_parameters(*plan, out);
   plan->add_flag("--optimise", out.optimise,
                  "Look for the order of chains of which the best is predicted, as order in [volume]");
   plan->add_flag("--all", out.all,

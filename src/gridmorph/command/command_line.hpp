@@ -29,6 +29,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> report;  ///< morph, wheel: instead of the case file's
   std::optional<std::filesystem::path> page;    ///< morph, wheel: the report as a page, instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
+  ParameterValues parameters;                   ///< morph, plan, wheel: in place of the case file's
   bool dry_run = false;
   bool all = false;                            ///< plan: every chain of however many
   bool optimise = false;                       ///< plan: order of chains by prediction

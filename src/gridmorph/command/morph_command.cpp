@@ -14,7 +14,7 @@ void set_quality(CaseFile& case_file, std::optional<std::string> const& mode) {
 }
 
 int run_morph_command(CommandLine const& options, Terminal& terminal) {
-  CaseFile case_file = read_case_file(*options.case_document);
+  CaseFile case_file = read_case_file(*options.case_document, options.parameters);
   if (options.output) (case_file.sequence ? case_file.sequence->output : case_file.output) = *options.output;
   if (options.report) case_file.output_options.report = *options.report;
   if (options.page) case_file.output_options.page = *options.page;
@@ -22,8 +22,8 @@ int run_morph_command(CommandLine const& options, Terminal& terminal) {
   if (options.fraction) {
     if (case_file.sequence)
       throw ConfigError(
-          fmt::format("{}: --fraction is for one mesh, and this has [sequence]; change the amplitudes of its rules",
-                      case_file.source.string()));
+          fmt::format("{}: --fraction is for one mesh, and this has [{}]; change the amplitudes of its rules",
+                      case_file.source.string(), case_file.sequence->is_sweep() ? "sweep" : "sequence"));
     take_fraction(case_file, *options.fraction);
   }
   if (options.dry_run) {

@@ -7,7 +7,7 @@
 namespace gridmorph::cli {
 
 int run_plan_command(CommandLine const& options, Terminal& terminal) {
-  CaseFile case_file = read_case_file(*options.case_document);
+  CaseFile case_file = read_case_file(*options.case_document, options.parameters);
   if (options.optimise) case_file.plan.volume.order = OrderBy::prediction;
   if (options.graph) {
     auto const ending = options.graph->extension();

@@ -6,7 +6,7 @@
 namespace gridmorph::cli {
 
 int run_wheel_command(CommandLine const& options, Terminal& terminal) {
-  CaseFile case_file = read_case_file(*options.case_document);
+  CaseFile case_file = read_case_file(*options.case_document, options.parameters);
   set_quality(case_file, options.quality);
   if (!case_file.wheel)
     throw ConfigError(options.input.string() + ": no [wheel]; add [wheel] with output = \"wheel.cgns\"");

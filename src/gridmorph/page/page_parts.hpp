@@ -18,6 +18,10 @@ std::string passages_part(ReportPage const& page);
 std::string times_part(ReportPage const& page);
 std::string repeat_part(ReportPage const& page);
 
+/// How people call a step of the report's sequence: "step", of a sweep "design".
+inline std::string step_word(ReportPage const& page) {
+  return page.report["sequence"].contains("parameters") ? "design" : "step";
+}
 /// A number of the report: format_value(); "unbounded" for null.
 std::string number(nlohmann::json const& value);
 std::string number(double value);

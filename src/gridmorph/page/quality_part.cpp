@@ -129,7 +129,8 @@ std::string clearances_part(ReportPage const& page) {
 std::string quality_part(ReportPage const& page) {
   std::string out = "<section id=\"quality\"><h2>Quality before and after</h2>\n";
   if (page.report.contains("sequence"))
-    out += fmt::format("<p>Of step {}, the worst one.</p>\n", page.report["sequence"]["worst_step"].get<Index>());
+    out += fmt::format("<p>Of {} {}, the worst one.</p>\n", step_word(page),
+                       page.report["sequence"]["worst_step"].get<Index>());
   if (page.report.contains("passages"))
     out += fmt::format("<p>Of passage {}, the worst one; the baseline is the same in all.</p>\n",
                        page.report["worst_passage"].get<Index>());

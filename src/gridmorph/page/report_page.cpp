@@ -64,11 +64,15 @@ std::string page_text(ReportPage const& page) {
     char const *id, *title;
     std::string text;
   };
-  std::vector<Part> const parts{
-      {"moved", "What moved", motion_part(page)},    {"sequence", "Steps", sequence_part(page)},
-      {"passages", "Passages", passages_part(page)}, {"plan", "Plan", plan_part(page)},
-      {"quality", "Quality", quality_part(page)},    {"sections", "Sections", sections_part(page)},
-      {"timings", "Timings", times_part(page)},      {"repeat", "Repeat", repeat_part(page)}};
+  bool const of_designs = page.report.contains("sequence") && step_word(page) == "design";
+  std::vector<Part> const parts{{"moved", "What moved", motion_part(page)},
+                                {"sequence", of_designs ? "Designs" : "Steps", sequence_part(page)},
+                                {"passages", "Passages", passages_part(page)},
+                                {"plan", "Plan", plan_part(page)},
+                                {"quality", "Quality", quality_part(page)},
+                                {"sections", "Sections", sections_part(page)},
+                                {"timings", "Timings", times_part(page)},
+                                {"repeat", "Repeat", repeat_part(page)}};
   out += verdict_part(page) + "<nav aria-label=\"parts of the page\">";
   for (Part const& part : parts)
     if (!part.text.empty()) out += fmt::format("<a href=\"#{}\">{}</a> ", part.id, part.title);

@@ -17,8 +17,8 @@ struct Curve {
   double low = 0;  ///< what the axis includes
 };
 
-/// Values over time, with a mark at the worst step.
-std::string curve_svg(Curve const& curve, std::vector<double> const& time, std::size_t worst) {
+/// Values over time, or of designs, with a mark at the worst step.
+std::string curve_svg(Curve const& curve, std::vector<double> const& time, std::size_t worst, char const* axis) {
   constexpr double wide = 560, high = 180, left = 64, right = 12, top = 10, bottom = 30;
   auto [least, most] = std::minmax_element(curve.value.begin(), curve.value.end());
   double const low = std::min(curve.low, *least), height = std::max(*most - low, 1e-300);
@@ -46,13 +46,19 @@ std::string curve_svg(Curve const& curve, std::vector<double> const& time, std::
   for (std::size_t const n : {std::size_t(0), time.size() - 1})
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{:.4g}</text>", x(n), high - 10,
                        n == 0 ? "start" : "end", time[n]);
-  return svg + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">time</text></svg>",
-                           0.5 * (left + wide), high - 10);
+  return svg + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text></svg>",
+                           0.5 * (left + wide), high - 10, axis);
 }
 
 std::string step_caption(json const& step) {
-  std::string text = fmt::format("step {}, time {}: largest displacement {}", step["step"].get<Index>(),
-                                 number(step["time"]), number(step["largest_displacement"]));
+  std::string when;
+  if (step.contains("time")) {
+    when = ", time " + number(step["time"]);
+  } else {
+    for (auto const& [name, value] : step["parameters"].items()) when += fmt::format(", {} {}", name, number(value));
+  }
+  std::string text = fmt::format("{} {}{}: largest displacement {}", step.contains("time") ? "step" : "design",
+                                 step["step"].get<Index>(), when, number(step["largest_displacement"]));
   if (!step["min_determinant"].is_null()) text += ", smallest determinant " + number(step["min_determinant"]["value"]);
   if (Index const n = step["newly_inverted"].get<Index>(); n > 0) text += fmt::format(", {} newly inverted", n);
   return text;
@@ -75,15 +81,17 @@ std::string sequence_part(ReportPage const& page) {
   json const& steps = sequence["steps"];
   auto const worst = sequence["worst_step"].get<std::size_t>() - 1;
   std::vector<double> time;
-  Curve quality{"smallest determinant 3\u00d73\u00d73 over time", {}, 0},
-      motion{"largest displacement over time", {}, 0};
+  bool const of_designs = sequence.contains("parameters");
+  std::string const word = step_word(page), over = of_designs ? " of the designs" : " over time";
+  char const* const axis = of_designs ? "design" : "time";
+  Curve quality{"smallest determinant 3\u00d73\u00d73" + over, {}, 0}, motion{"largest displacement" + over, {}, 0};
   for (json const& step : steps) {
-    time.push_back(step["time"]);
+    time.push_back(of_designs ? double(time.size() + 1) : step["time"].get<double>());
     motion.value.push_back(step["largest_displacement"]);
     if (!step["min_determinant"].is_null() && step["min_determinant"]["value"].is_number())
       quality.value.push_back(step["min_determinant"]["value"]);
   }
-  std::string out = fmt::format("<section id=\"sequence\"><h2>The {} steps</h2>\n", steps.size());
+  std::string out = fmt::format("<section id=\"sequence\"><h2>The {} {}s</h2>\n", steps.size(), word);
   if (!page.steps.empty()) {
     std::size_t shown = 0;
     for (std::size_t n = 0; n < page.steps.size(); ++n)
@@ -92,30 +100,37 @@ std::string sequence_part(ReportPage const& page) {
     for (StepFigure const& f : page.steps) out += figure(f.body, step_caption(steps[f.step - 1]));
     out += "</div>\n" + scale_of_displacement(page.scale_end);
     if (page.steps.size() < steps.size())
-      out += fmt::format("<p class=\"dim\">{} of {} steps are shown, the worst one among them.</p>\n",
-                         page.steps.size(), steps.size());
+      out += fmt::format("<p class=\"dim\">{} of {} {}s are shown, the worst one among them.</p>\n", page.steps.size(),
+                         steps.size(), word);
   }
   out += "<div class=\"figures charts\">";
   if (quality.value.size() == time.size())
-    out += figure(curve_svg(quality, time, worst), quality.title + fmt::format("; the worst is step {}", worst + 1));
-  out += figure(curve_svg(motion, time, worst), motion.title) + "</div>\n";
-  Table table({{"step", true},
-               {"time", true},
-               {"largest displacement", true},
-               {"smallest determinant", true},
-               {"newly inverted", true},
-               {"at"},
-               {"short of a threshold"}});
+    out += figure(curve_svg(quality, time, worst, axis),
+                  quality.title + fmt::format("; the worst is {} {}", word, worst + 1));
+  out += figure(curve_svg(motion, time, worst, axis), motion.title) + "</div>\n";
+  std::vector<std::string> const varied =
+      of_designs ? sequence["parameters"].get<std::vector<std::string>>() : std::vector<std::string>{"time"};
+  std::vector<Table::Column> columns{{word, true}};
+  for (std::string const& name : varied) columns.push_back({name, true});
+  for (Table::Column const& c :
+       {Table::Column{"largest displacement", true}, Table::Column{"smallest determinant", true},
+        Table::Column{"newly inverted", true}, Table::Column{"at"}, Table::Column{"short of a threshold"}})
+    columns.push_back(c);
+  Table table(std::move(columns));
   constexpr std::size_t most_rows = 100;
   std::size_t const stride = (steps.size() + most_rows - 1) / most_rows;
   for (std::size_t s = 0; s < steps.size(); ++s) {
     if (s % stride != 0 && s != worst) continue;
     json const& step = steps[s];
     json const& least = step["min_determinant"];
-    table.add({s == worst ? fmt::format("<b>{}</b>", s + 1) : std::to_string(s + 1), number(step["time"]),
-               number(step["largest_displacement"]), least.is_null() ? "" : number(least["value"]),
-               count(step["newly_inverted"]), place_in_step(step),
-               step["shortfall"].is_null() ? "" : escaped(step["shortfall"].get<std::string>())});
+    std::vector<std::string> row{s == worst ? fmt::format("<b>{}</b>", s + 1) : std::to_string(s + 1)};
+    for (std::string const& name : varied) row.push_back(number(of_designs ? step["parameters"][name] : step["time"]));
+    for (std::string const& cell :
+         {number(step["largest_displacement"]), least.is_null() ? std::string() : number(least["value"]),
+          count(step["newly_inverted"]), place_in_step(step),
+          step["shortfall"].is_null() ? std::string() : escaped(step["shortfall"].get<std::string>())})
+      row.push_back(cell);
+    table.add(std::move(row));
   }
   return out + table.html() + "</section>\n";
 }

@@ -88,7 +88,7 @@ Verdict verdict_of(ReportPage const& page) {
   json const& report = page.report;
   json const& morphed = report["morphed"];
   Index inverted = newly_inverted_of(morphed);
-  bool falls_short = false;
+  bool falls_short = false, left_out = false;
   std::string steps;
   for (json const& s : report["shortfalls"]) falls_short = falls_short || s["severity"] == "failure";
   if (report.contains("sequence")) {
@@ -97,12 +97,15 @@ Verdict verdict_of(ReportPage const& page) {
       bad += step["newly_inverted"].get<Index>() > 0 ? 1 : 0;
       beyond += step["shortfall"].is_null() ? 0 : 1;
       inverted = std::max(inverted, step["newly_inverted"].get<Index>());
+      left_out = left_out || !step.contains("file");
     }
+    left_out = left_out && step_word(page) == "design";
     falls_short = falls_short || beyond > 0;
     auto const n = report["sequence"]["steps"].size();
-    steps = bad > 0      ? fmt::format(" in {} of {} steps", bad, n)
-            : beyond > 0 ? fmt::format(" in {} of {} steps", beyond, n)
-                         : fmt::format(" in any of {} steps", n);
+    std::string const word = step_word(page);
+    steps = bad > 0      ? fmt::format(" in {} of {} {}s", bad, n, word)
+            : beyond > 0 ? fmt::format(" in {} of {} {}s", beyond, n, word)
+                         : fmt::format(" in any of {} {}s", n, word);
   }
   if (report.contains("passages")) {
     Index of_all = 0;
@@ -112,7 +115,10 @@ Verdict verdict_of(ReportPage const& page) {
   }
   if (inverted > 0) {
     bool const written = !report["output"].is_null();
-    return {"bad", "\u2716", written ? "Inverted, and written all the same" : "Inverted: nothing was written",
+    return {"bad", "\u2716",
+            !written   ? "Inverted: nothing was written"
+            : left_out ? "Some designs are inverted: the others are written"
+                       : "Inverted, and written all the same",
             fmt::format("{} {}{} turned inside out that {} sound in the baseline.", count(inverted), page.kind, steps,
                         inverted == 1 ? "was" : "were")};
   }
@@ -130,7 +136,7 @@ std::string certificate_sentence(ReportPage const& page) {
   if (!morphed.contains("certificate")) return {};
   json const& c = morphed["certificate"];
   std::string of_worst = page.report.contains("passages") ? " of the wheel" : "";
-  if (page.report.contains("sequence")) of_worst += " of the worst step";
+  if (page.report.contains("sequence")) of_worst += " of the worst " + step_word(page);
   if (c["holds"].get<bool>())
     return fmt::format(
         "Certified by bounds of the Jacobian over the whole of all {} {}{}, not at corners alone{}{}.",

@@ -69,11 +69,13 @@ void add_region_of_elements(Mesh const& mesh, InnerRegion const& region, Measure
 }
 
 /// "step 7 of 24 comes out worst: "
-std::string worst_step_text(int step, int steps) {
+std::string worst_step_text(SequenceOptions const& options, int step) {
+  int const steps = options.steps;
   auto const looked_at = int(some_steps(steps, most_predicted).size());
+  std::string const which = fmt::format("{} {}", options.step_word(), step + 1);
   return looked_at == steps
-             ? fmt::format("step {} of {} comes out worst: ", step + 1, steps)
-             : fmt::format("step {} comes out worst of the {} that are looked at of {}: ", step + 1, looked_at, steps);
+             ? fmt::format("{} of {} comes out worst: ", which, steps)
+             : fmt::format("{} comes out worst of the {} that are looked at of {}: ", which, looked_at, steps);
 }
 
 }  // namespace
@@ -235,9 +237,9 @@ std::vector<std::string> CasePlan::notes() const {
     if (trim.share() <= case_file_.guard.max_trim) out.push_back(describe(trim));
   if (frozen_ && !frozen_->cells.empty())
     out.push_back(
-        fmt::format("{} cells lose their shape in some of the steps; nodes around them are smoothed in all "
-                    "of the steps alike",
-                    frozen_->cells.size()));
+        fmt::format("{0} cells lose their shape in some of the {1}s; nodes around them are smoothed in all "
+                    "of the {1}s alike",
+                    frozen_->cells.size(), case_file_.sequence ? case_file_.sequence->step_word() : "step"));
   if (evaluated_ || !mesh_.is_structured()) append(mapping_notes(case_file_));
   return out;
 }
@@ -256,7 +258,7 @@ PlanPrediction CasePlan::predict() {
   PlanPrediction out{describe(patched(), closely), prediction_warnings(patched(), closely),
                      prediction_json(patched(), closely)};
   if (!case_file_.sequence) return out;
-  out.text = worst_step_text(worst.step(), case_file_.sequence->steps) + out.text;
+  out.text = worst_step_text(*case_file_.sequence, worst.step()) + out.text;
   out.json["step"] = worst.step() + 1;
   return out;
 }

@@ -50,9 +50,24 @@ Index SequenceStep::newly_inverted() const {
   return out;
 }
 
+namespace {
+
+/// "lean 0.01 m, stagger 2.5 deg".
+std::string parameters_text(std::vector<Parameter> const& parameters) {
+  std::string out;
+  for (Parameter const& p : parameters)
+    out += fmt::format("{}{} {:.9g}{}", out.empty() ? "" : ", ", p.name, p.value, p.unit.empty() ? "" : " " + p.unit);
+  return out;
+}
+
+}  // namespace
+
 RunDocument document_of(CaseFile const& case_file) {
   RunDocument out{case_file.source.string(), case_file.input.string()};
   out.thresholds = thresholds_of(case_file);
+  out.parameters = case_file.parameters;
+  if (bool const varies = case_file.sequence && case_file.sequence->is_sweep(); !varies && !out.parameters.empty())
+    out.notes.push_back("parameters: " + parameters_text(out.parameters));
   for (auto const& use : case_file.fields) {
     out.fields.push_back(mapping_json(*use.field));
     out.fields.back()["rule"] = use.where;
@@ -119,13 +134,21 @@ json passages_json(std::vector<MorphedStep> const& passages) {
   return out;
 }
 
+json parameters_json(std::vector<Parameter> const& parameters) {
+  json out = json::object();
+  for (Parameter const& p : parameters)
+    out[p.name] = {{"value", p.value},
+                   {"unit", p.unit.empty() ? json() : json(p.unit)},
+                   {"range", p.range ? json(*p.range) : json()}};
+  return out;
+}
+
 json sequence_json(MorphedSequence const& sequence, bool of_wheel) {
   SequenceOptions const& options = sequence.options;
   json list = json::array();
   for (SequenceStep const& step : sequence.steps) {
     MorphedStep const& worst = step.passages[step.worst];
     json now{{"step", list.size() + 1},
-             {"time", step.time},
              {"largest_displacement", step.largest_displacement()},
              {"newly_inverted", step.newly_inverted()},
              {"shortfall", step.failures.empty() ? json() : json(step.failures.front())},
@@ -137,13 +160,18 @@ json sequence_json(MorphedSequence const& sequence, bool of_wheel) {
     } else if (!worst.clearances.empty()) {
       now["clearances"] = clearance_json(worst.clearances);
     }
-    if (one_file_per_step(options)) now["file"] = step_path(options, int(list.size())).string();
+    if (options.is_sweep())
+      now["parameters"] = options.values_at(int(list.size()));
+    else
+      now["time"] = step.time;
+    if (one_file_per_step(options) && !step.left_out) now["file"] = step_path(options, int(list.size())).string();
     list.push_back(std::move(now));
   }
-  json out{{"period", options.period},
-           {"periods", options.periods},
-           {"worst_step", sequence.worst + 1},
-           {"steps", std::move(list)}};
+  json out{{"worst_step", sequence.worst + 1}, {"steps", std::move(list)}};
+  if (options.is_sweep())
+    out["parameters"] = options.parameters;
+  else
+    out.update({{"period", options.period}, {"periods", options.periods}});
   if (of_wheel) out["passages"] = passages_over_time_json(sequence.steps);
   return out;
 }
@@ -151,8 +179,12 @@ json sequence_json(MorphedSequence const& sequence, bool of_wheel) {
 /// A row per step, of a wheel with its worst passage; of long sequences evenly spaced steps and the worst.
 std::string steps_table(MorphedSequence const& sequence, bool of_wheel) {
   constexpr std::size_t most_rows = 100;
+  SequenceOptions const& options = sequence.options;
+  std::string when;
+  for (std::string const& name : options.is_sweep() ? options.parameters : std::vector<std::string>{"time"})
+    when += fmt::format("  {:>12}", name);
   std::string text =
-      fmt::format("{:>6}  {:>12}  {:>20}  {:>20}  {:>14}  {}at\n", "step", "time", "largest displacement",
+      fmt::format("{:>6}{}  {:>20}  {:>20}  {:>14}  {}at\n", options.step_word(), when, "largest displacement",
                   "smallest determinant", "newly inverted", of_wheel ? "passage  " : "");
   auto const& steps = sequence.steps;
   std::size_t const stride = (steps.size() + most_rows - 1) / most_rows;
@@ -160,29 +192,36 @@ std::string steps_table(MorphedSequence const& sequence, bool of_wheel) {
     if (s % stride != 0 && s != sequence.worst) continue;
     SequenceStep const& step = steps[s];
     MorphedStep const& at = step.passages[step.worst];
-    text += fmt::format("{:>6}  {:>12.6g}  {:>20.6g}  {:>20.4f}  {:>14}  {}{}{}\n", s + 1, step.time,
-                        step.largest_displacement(), at.determinant, step.newly_inverted(),
-                        of_wheel ? fmt::format("{:>7}  ", step.worst + 1) : "", at.place,
-                        s == sequence.worst ? "  <- worst" : "");
+    when.clear();
+    std::vector<double> const values = options.is_sweep() ? options.designs[s] : std::vector<double>{step.time};
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      std::size_t const wide = options.is_sweep() ? options.parameters[v].size() : 0;
+      when += fmt::format("  {:>{}.6g}", values[v], std::max<std::size_t>(12, wide));
+    }
+    text += fmt::format("{:>6}{}  {:>20.6g}  {:>20.4f}  {:>14}  {}{}{}\n", s + 1, when, step.largest_displacement(),
+                        at.determinant, step.newly_inverted(), of_wheel ? fmt::format("{:>7}  ", step.worst + 1) : "",
+                        at.place, s == sequence.worst ? "  <- worst" : "");
   }
   return text;
 }
 
 /// "3 of 24 steps fall short, the first is step 7: ..."; empty where none does.
-std::string short_steps_text(std::vector<SequenceStep> const& steps) {
+std::string short_steps_text(MorphedSequence const& sequence) {
+  std::vector<SequenceStep> const& steps = sequence.steps;
   auto const falls_short = [](SequenceStep const& step) { return !step.failures.empty(); };
   auto const first = std::find_if(steps.begin(), steps.end(), falls_short);
   if (first == steps.end()) return "";
   auto const count = std::count_if(steps.begin(), steps.end(), falls_short);
-  return fmt::format("{} of {} steps {} short, {} step {}: {}", count, steps.size(), count == 1 ? "falls" : "fall",
-                     count == 1 ? "it is" : "the first is", first - steps.begin() + 1, first->failures.front());
+  char const* const word = sequence.options.step_word();
+  return fmt::format("{} of {} {}s {} short, {} {} {}: {}", count, steps.size(), word, count == 1 ? "falls" : "fall",
+                     count == 1 ? "it is" : "the first is", word, first - steps.begin() + 1, first->failures.front());
 }
 
 std::string steps_text(MorphedSequence const& sequence) {
   std::vector<std::vector<TipClearance>> clearances;
   for (SequenceStep const& step : sequence.steps) clearances.push_back(step.passages.front().clearances);
   std::string text = steps_table(sequence, false);
-  for (std::string const& more : {clearance_steps_table(clearances), short_steps_text(sequence.steps)})
+  for (std::string const& more : {clearance_steps_table(clearances), short_steps_text(sequence)})
     if (!more.empty()) text += "\n" + more + (more.back() == '\n' ? "" : "\n");
   return text;
 }
@@ -194,8 +233,9 @@ std::string mesh_text(RunDocument const& document) {
     text += (s.severity == Shortfall::Severity::failure ? "falls short: " : "warning: ") + s.message + "\n";
   text += mesh.plan.headline;
   if (document.sequence)
-    text += (text.empty() ? "" : "\n") + steps_text(*document.sequence) +
-            fmt::format("\nstep {}, the worst one\n\n", document.sequence->worst + 1);
+    text +=
+        (text.empty() ? "" : "\n") + steps_text(*document.sequence) +
+        fmt::format("\n{} {}, the worst one\n\n", document.sequence->options.step_word(), document.sequence->worst + 1);
   else  // notes of a plan without a headline go straight on to what follows
     text += (mesh.plan.headline.empty() ? "" : "\n") +
             (mesh.clearances.empty() ? std::string() : clearance_table(mesh.clearances) + "\n");
@@ -225,6 +265,7 @@ json morphed_json(RunDocument const& document) {
   json out = quality_json(document.baseline, morphed, document.thresholds);
   out["shortfalls"] = shortfalls_json(shortfalls_of(document));
   out["fields"] = document.fields;
+  if (!document.parameters.empty()) out["parameters"] = parameters_json(document.parameters);
   out["output"] = document.output ? json(*document.output) : json();
   if (document.sequence) out["sequence"] = sequence_json(*document.sequence, document.wheel.has_value());
   if (document.wheel) out.update(wheel_json(*document.wheel));
@@ -283,14 +324,14 @@ std::vector<Shortfall> shortfalls_of(RunDocument const& document) {
 
 bool misses_thresholds(RunDocument const& document) {
   if (any_failure(shortfalls_of(document))) return true;
-  return document.sequence && !short_steps_text(document.sequence->steps).empty();
+  return document.sequence && !short_steps_text(*document.sequence).empty();
 }
 
 std::vector<std::string> warnings_of(RunDocument const& document) {
   if (document.wheel)
     return document.sequence ? failures_of(document.sequence->steps) : failures_of(document.wheel->passages);
   std::vector<std::string> out = messages_of(shortfalls_of(document));
-  if (std::string const steps = document.sequence ? short_steps_text(document.sequence->steps) : ""; !steps.empty())
+  if (std::string const steps = document.sequence ? short_steps_text(*document.sequence) : ""; !steps.empty())
     out.insert(out.begin(), steps);
   return out;
 }

@@ -68,6 +68,7 @@ struct SequenceStep {
   std::vector<MorphedStep> passages = {};  ///< of a wheel; otherwise the mesh alone
   std::vector<std::string> failures = {};
   std::size_t worst = 0;  ///< number of the worst passage
+  bool left_out = false;  ///< a design that is not written
 
   [[nodiscard]] double largest_displacement() const;
   /// Cells of all passages.
@@ -117,6 +118,7 @@ struct RunDocument {
   Index nodes = 0;
   StepTimes times = {};
   std::vector<std::string> notes = {};
+  std::vector<Parameter> parameters = {};
   nlohmann::json fields = nlohmann::json::array();    ///< of rules `field`: how they were mapped
   nlohmann::json guarded = nlohmann::json::object();  ///< Guarded::json
   QualityThresholds thresholds = {};

@@ -1,4 +1,4 @@
-// A sequence of meshes over time from one plan.
+// A sequence of meshes from one plan: over time, or of the designs of a sweep.
 #include <gridmorph/core/error.hpp>
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/core/stopwatch.hpp>
@@ -35,10 +35,15 @@ double largest_displacement(Coordinates const& before, Coordinates const& after)
 void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
   auto const& options = *case_file.sequence;
   if (options.output.empty())
+    throw ConfigError(fmt::format("{}: no output; add {} or give --output FILE", case_file.source.string(),
+                                  options.is_sweep() ? "output = \"design_{design}.cgns\" to [sweep]"
+                                                     : "output = \"series.cgns\" or output = \"step_{step}.cgns\" to "
+                                                       "[sequence]"));
+  if (options.is_sweep() && !one_file_per_step(options))
     throw ConfigError(
-        fmt::format("{}: no output; add output = \"series.cgns\" or output = \"step_{{step}}.cgns\" to [sequence] or "
-                    "give --output FILE",
-                    case_file.source.string()));
+        fmt::format("{}: the output '{}' of a [sweep] has no {{design}} in its name, which tells the files "
+                    "of designs apart; write 'design_{{design}}{}'",
+                    case_file.source.string(), options.output.string(), options.output.extension().string()));
   int const files = one_file_per_step(options) ? options.steps : 1;
   if (files == 1 && !one_file_per_step(options) &&
       (case_file.output_options.displacement || case_file.output_options.quality))
@@ -63,6 +68,9 @@ void check_sequence_outputs(CaseFile const& case_file, MeshSource const& file) {
 std::pair<double, double> badness(SequenceStep const& step) {
   return {step.passages.front().determinant, step.passages.front().inversion};
 }
+
+/// Designs that are left out and listed.
+constexpr std::size_t most_named = 20;
 
 class Sequence {
  public:
@@ -139,13 +147,14 @@ class Sequence {
     inverted_ = false;
     files_.emplace(case_file_, run_.mesh());
     for (int step = 0; step < options_.steps; ++step) {
-      console_.progress(fmt::format("step {} of {}", step + 1, options_.steps), double(step) / options_.steps);
+      console_.progress(fmt::format("{} {} of {}", options_.step_word(), step + 1, options_.steps),
+                        double(step) / options_.steps);
       make_step(step);
     }
   }
 
   void make_step(int step) {
-    std::string const count = fmt::format(", {} steps", options_.steps);
+    std::string const count = fmt::format(", {} {}s", options_.steps, options_.step_word());
     Moment const& moment = moments_[step];
     part_.lap();
     relaxed_ = std::max(relaxed_, run_.morph(&moment).before);
@@ -157,9 +166,18 @@ class Sequence {
     judge(step);
     if (page_) page_->add_step(run_, step, options_.steps, sequence_.worst == std::size_t(step));
     part_.lap();
-    // Once a step cannot be used the files are not needed; the table still says how the others fare.
-    if (!inverted_ || case_file_.guard.write_inverted) files_->add(run_.morphed(), run_.fields());
+    if (is_usable(sequence_.steps.back()))
+      files_->add(step, run_.morphed(), run_.fields());
+    else
+      sequence_.steps.back().left_out = true;
     add_time(run_.times, "write" + count, part_.lap(), false);
+  }
+
+  /// Once a step over time cannot be used the files are not needed; the table still says how the others fare. Designs
+  /// are used one by one.
+  [[nodiscard]] bool is_usable(SequenceStep const& step) const {
+    if (case_file_.guard.write_inverted) return true;
+    return options_.is_sweep() ? step.newly_inverted() == 0 : !inverted_;
   }
 
   void judge(int step) {
@@ -181,7 +199,8 @@ class Sequence {
   }
 
   void look_at_worst() {
-    written_ = !inverted_ || case_file_.guard.write_inverted;
+    auto const& steps = sequence_.steps;
+    written_ = std::any_of(steps.begin(), steps.end(), [&](SequenceStep const& step) { return is_usable(step); });
     (void)run_.morph(&moments_[sequence_.worst]);
     if (verdicts_ || !written_ || page_) {  // what is said of the worst cell needs it as it came out in the end
       run_.measure();
@@ -201,11 +220,12 @@ class Sequence {
   void add_guard_notes() {
     constexpr std::size_t most_notes = 8;  // of more of them the number
     if (relaxed_ > 0)
-      guarded_.notes.push_back(fmt::format("in a step up to {} {}; displacements around them are smoothed", relaxed_,
-                                           run_.mesh().kind().lost));
+      guarded_.notes.push_back(fmt::format("in a {} up to {} {}; displacements around them are smoothed",
+                                           options_.step_word(), relaxed_, run_.mesh().kind().lost));
     std::size_t shown = 0;
     for (auto const& [step, text] : stepped_)
-      if (shown++ < most_notes) guarded_.notes.push_back(fmt::format("step {}: {}", step + 1, text));
+      if (shown++ < most_notes)
+        guarded_.notes.push_back(fmt::format("{} {}: {}", options_.step_word(), step + 1, text));
     if (shown > most_notes) guarded_.notes.push_back(fmt::format("the same in {} more steps", shown - most_notes));
   }
 
@@ -215,6 +235,18 @@ class Sequence {
     part_.lap();
     page_->finish(run_, worst_quality_);
     document_.times.push_back({"page", part_.lap()});
+  }
+
+  /// Designs that are not written: how many, and which they are.
+  [[nodiscard]] std::string wrote() const {
+    std::string out = wrote_steps(options_), which;
+    auto const& steps = document_.sequence->steps;
+    std::size_t count = 0;
+    for (std::size_t s = 0; s < steps.size(); ++s)
+      if (steps[s].left_out && ++count <= most_named) which += (which.empty() ? "" : ", ") + std::to_string(s + 1);
+    if (count == 0) return out;
+    return out + fmt::format("not written: {} of {} designs, whose cells are inverted: {}{}\n", count, steps.size(),
+                             which, count > most_named ? ", ..." : "");
   }
 
   int end() {
@@ -227,10 +259,11 @@ class Sequence {
                          [&] {
                            if (written_) files_->commit();
                          },
-                     .wrote = wrote_steps(options_),
+                     .wrote = wrote(),
                      .refusal =
                          [&] {
-                           return run_.refusal_of(options_.output, "steps have cells",
+                           return run_.refusal_of(options_.output,
+                                                  options_.is_sweep() ? "all designs have cells" : "steps have cells",
                                                   "lower the amplitudes, change " + file_.traits().change_many);
                          }},
                     console_);

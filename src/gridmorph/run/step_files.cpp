@@ -12,8 +12,6 @@ namespace gridmorph::cli {
 
 namespace {
 
-constexpr std::string_view mark = "{step}";
-
 std::vector<double> times_of(SequenceOptions const& options) {
   std::vector<double> times;
   for (int step = 0; step < options.steps; ++step) times.push_back(options.time_at(step));
@@ -22,12 +20,9 @@ std::vector<double> times_of(SequenceOptions const& options) {
 
 }  // namespace
 
-bool one_file_per_step(SequenceOptions const& options) {
-  return options.output.filename().string().find(mark) != std::string::npos;
-}
-
 std::filesystem::path step_path(SequenceOptions const& options, int step) {
   std::string name = options.output.filename().string();
+  std::string const mark = fmt::format("{{{}}}", options.step_word());
   auto const digits = std::to_string(options.steps).size();
   if (auto const at = name.find(mark); at != std::string::npos)
     name.replace(at, mark.size(), fmt::format("{:0{}}", step + 1, digits));
@@ -51,7 +46,7 @@ StepFiles::~StepFiles() {
   for (auto const& folder : folders_) std::filesystem::remove_all(folder, ignored);
 }
 
-void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
+void StepFiles::add(int step, Coordinates const& morphed, OutputFields const& fields) {
   if (series_) {
     series_->add(mesh_.in_file(morphed));
     return;
@@ -59,7 +54,7 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
   // What takes several files is written where it belongs.
   auto const ending = case_file_.sequence->output.extension();
   if (format_ == MeshFormat::openfoam || ending == ".vtm" || ending == ".pvtu") {
-    auto const folder = step_path(*case_file_.sequence, steps_++);
+    auto const folder = step_path(*case_file_.sequence, step);
     std::error_code ignored;
     auto const beside = format_ == MeshFormat::openfoam ? folder : std::filesystem::path(folder).replace_extension();
     for (auto const& p : {folder, beside})
@@ -67,16 +62,16 @@ void StepFiles::add(Coordinates const& morphed, OutputFields const& fields) {
     mesh_.write(case_file_.input, folder, morphed, fields);
     return;
   }
-  auto const& file = files_.emplace_back(step_path(*case_file_.sequence, int(files_.size())).string());
+  auto const& file = files_.emplace_back(step_path(*case_file_.sequence, step).string());
   mesh_.write(case_file_.input, file.path(), morphed, fields);
 }
 
-void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options) {
+void commit_steps(std::deque<io::OutputFile>& files) {
   int done = 0;
   try {
     for (; done < int(files.size()); ++done) files[done].commit();
   } catch (MachineError const&) {
-    for (int step = 0; step < done; ++step) std::remove(step_path(options, step).c_str());
+    for (int step = 0; step < done; ++step) std::remove(files[step].output().c_str());
     throw;
   }
 }
@@ -87,7 +82,7 @@ void StepFiles::commit() {
     series_->commit();
     return;
   }
-  commit_steps(files_, *case_file_.sequence);
+  commit_steps(files_);
 }
 
 }  // namespace gridmorph::cli

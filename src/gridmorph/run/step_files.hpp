@@ -12,18 +12,15 @@
 
 namespace gridmorph::cli {
 
-/// Whether the output names one file per step.
-bool one_file_per_step(SequenceOptions const& options);
-
-/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}"
-/// the output as it is.
+/// "blade_{step}.cgns" -> "blade_007.cgns" for step 6 of 100: as many digits as the last step needs. Without "{step}",
+/// of a sweep "{design}", the output as it is.
 std::filesystem::path step_path(SequenceOptions const& options, int step);
 
 /// "wrote step_1.cgns ... step_8.cgns" or "wrote series.cgns (8 steps)", on a line of its own.
 std::string wrote_steps(SequenceOptions const& options);
 
 /// Puts files of steps, from the first on, in place: all or none. Throws MachineError.
-void commit_steps(std::deque<io::OutputFile>& files, SequenceOptions const& options);
+void commit_steps(std::deque<io::OutputFile>& files);
 
 class StepFiles {
  public:
@@ -33,8 +30,8 @@ class StepFiles {
   StepFiles& operator=(StepFiles const&) = delete;
   ~StepFiles();
 
-  /// Writes the next step beside its place. Fields only with one file per step.
-  void add(Coordinates const& morphed, OutputFields const& fields);
+  /// Writes a step, a later one than those before, beside its place. Fields only with one file per step.
+  void add(int step, Coordinates const& morphed, OutputFields const& fields);
   /// Puts everything in place. Throws MachineError when a file cannot be renamed; those that were put in place before
   /// it are taken away again.
   void commit();
@@ -43,7 +40,6 @@ class StepFiles {
   CaseFile const& case_file_;
   LoadedMesh const& mesh_;
   MeshFormat format_;
-  int steps_ = 0;                     ///< folders written
   std::deque<io::OutputFile> files_;  ///< of the steps so far
   std::vector<std::filesystem::path>
       folders_;  ///< of the steps so far, where each takes several files; emptied once they are to stay

@@ -44,7 +44,7 @@ class WheelFiles {
       series_->commit();
       return;
     }
-    commit_steps(files_, options_);
+    commit_steps(files_);
   }
 
  private:

@@ -117,12 +117,6 @@ std::vector<std::string> read_of(TableReader& table) {
   return of.value_or(std::vector<std::string>{});
 }
 
-std::optional<double> number_of(toml::value const& v) {
-  if (v.is_integer()) return double(v.as_integer());
-  if (v.is_floating() && std::isfinite(v.as_floating())) return v.as_floating();
-  return std::nullopt;
-}
-
 /// Pairs of numbers, [[a, b], ...], `least` of them; `what` says so in messages.
 std::vector<std::pair<double, double>> read_pairs(TableReader& table, std::string const& key, std::size_t least,
                                                   std::string const& what) {
@@ -133,8 +127,8 @@ std::vector<std::pair<double, double>> read_pairs(TableReader& table, std::strin
   if (good)
     for (auto const& pair : value->as_array()) {
       bool const two = pair.is_array() && pair.as_array().size() == 2;
-      auto const a = two ? number_of(pair.as_array()[0]) : std::nullopt,
-                 b = two ? number_of(pair.as_array()[1]) : std::nullopt;
+      auto const a = two ? table.value_of(pair.as_array()[0], key) : std::nullopt,
+                 b = two ? table.value_of(pair.as_array()[1], key) : std::nullopt;
       good = good && a && b;
       if (!good) break;
       out.emplace_back(*a, *b);
@@ -510,9 +504,7 @@ void read_constants(TableReader& table, std::string const& key, std::map<std::st
     auto const number = names->number(name);
     // A name that no formula can use would make the formula library throw.
     if (!is_free_formula_name(name))
-      names->problem(name,
-                     "cannot be the name of a constant; use letters, digits and '_', and none of x, y, z, r, theta, "
-                     "axial, t, step, pi, deg or the functions");
+      names->problem(name, not_a_constant);
     else if (number)
       constants[name] = *number;
   }

@@ -83,16 +83,11 @@ std::vector<std::pair<double, double>> read_stations(TableReader& table, std::st
     auto const constant = table.number(key);
     return constant ? std::vector<std::pair<double, double>>{{0, *constant}} : std::vector<std::pair<double, double>>{};
   }
-  auto const number = [](toml::value const& v) -> std::optional<double> {
-    if (v.is_integer()) return double(v.as_integer());
-    if (v.is_floating() && std::isfinite(v.as_floating())) return v.as_floating();
-    return std::nullopt;
-  };
   std::vector<std::pair<double, double>> stations;
   for (auto const& pair : value->as_array()) {
     bool const two = pair.is_array() && pair.as_array().size() == 2;
-    auto const span = two ? number(pair.as_array()[0]) : std::nullopt;
-    auto const v = two ? number(pair.as_array()[1]) : std::nullopt;
+    auto const span = two ? table.value_of(pair.as_array()[0], key) : std::nullopt;
+    auto const v = two ? table.value_of(pair.as_array()[1], key) : std::nullopt;
     if (!span || !v) {
       table.context().problem(
           table.context().line_of(pair),

@@ -1,4 +1,5 @@
 #include <gridmorph/case/detail/table_reader.hpp>
+#include <gridmorph/case/formula.hpp>
 #include <gridmorph/case/key_list.hpp>
 #include <gridmorph/core/suggest.hpp>
 #include <gridmorph/io/file_kind.hpp>
@@ -121,20 +122,21 @@ std::optional<bool> TableReader::boolean(std::string const& key) {
   return value->as_boolean();
 }
 
+std::optional<double> TableReader::value_of(toml::value const& value, std::string const& key) {
+  if (value.is_integer()) return double(value.as_integer());
+  if (value.is_floating() && std::isfinite(value.as_floating())) return value.as_floating();
+  if (!value.is_string() || context_->names.empty()) return std::nullopt;
+  unsigned const line = context_->line_of(value);
+  context_->expressions.push_back({{plain_name(), key, int(line)}, string_of(value)});
+  return value_of_formula({key, string_of(value), context_->where(line)}, context_->names, context_->problems);
+}
+
 std::optional<double> TableReader::finite(toml::value const& value, std::string const& key) {
-  double number = 0;
-  if (value.is_integer())
-    number = double(value.as_integer());
-  else if (value.is_floating())
-    number = value.as_floating();
-  else {
-    problem(key, fmt::format("expected a number, found {}{}", describe_value(value), about(key)));
-    return std::nullopt;
-  }
-  if (!std::isfinite(number)) {
-    problem(key, fmt::format("expected a finite number, found {}", number));
-    return std::nullopt;
-  }
+  std::size_t const before = context_->problems.messages().size();
+  auto const number = value_of(value, key);
+  if (!number && context_->problems.messages().size() == before)
+    problem(key, value.is_floating() ? fmt::format("expected a finite number, found {}", value.as_floating())
+                                     : fmt::format("expected a number, found {}{}", describe_value(value), about(key)));
   return number;
 }
 

@@ -8,11 +8,13 @@
 #include <gridmorph/kernels/vec3.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gridmorph::casefile {
@@ -28,6 +30,11 @@ struct Context {
   std::shared_ptr<TomlLines const> lines{};    ///< of the file
 
   std::vector<std::string> notes{};  ///< what was taken that nobody wrote
+
+  std::map<std::string, double> names{};  ///< of [parameters] and [constants]; where there are any, strings in the
+                                          ///< place of numbers are expressions of them
+  /// Keys that are such expressions.
+  std::vector<std::pair<GivenKey, std::string>> expressions{};
 
   /// A file as a key names it, to be read; noted, so that no output takes its place.
   std::filesystem::path input(std::string const& name) {
@@ -54,10 +61,16 @@ class TableReader {
   /// The value as it stands, or nothing. Marks the key as known.
   toml::value const* find(std::string const& key);
 
+  /// All of the table as it stands. Marks none of them as known.
+  [[nodiscard]] toml::table const& keys() const { return table_->as_table(); }
+  /// A number, or an expression of Context::names, as part of the value of a key; nothing, and no word, for others.
+  /// Expressions that have no value are noted.
+  std::optional<double> value_of(toml::value const& value, std::string const& key);
+
   // Each returns nothing when the key is absent, and also (after noting the problem) when its value is of another type.
   std::optional<std::string> string(std::string const& key);
   std::optional<bool> boolean(std::string const& key);
-  std::optional<double> number(std::string const& key);  ///< integer or float, finite
+  std::optional<double> number(std::string const& key);  ///< integer, float or expression (value_of()), finite
   std::optional<int> integer(std::string const& key);
   std::optional<Vec3> vector(std::string const& key);  ///< three numbers
   std::optional<std::vector<double>> numbers(std::string const& key);
