@@ -116,6 +116,43 @@ def test_gradients_of_parameters_are_those_of_whole_morphs(mesh):
         plan.parameter_gradient(motion, p, 1e-5, weights)
 
 
+def test_parameters_of_a_case_file(meshes, tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text("""
+[mesh]
+input = "wing.cgns"
+[parameters]
+lean = { value = 0.1, range = [-1, 1] }
+lift = 0.5
+[[motion]]
+patches = "wall"
+rule = "formula"
+dx = "lean * z"
+dy = "lift * lean * z^2"
+""")
+    assert gridmorph.Motion.read(case).parameters == {"lean": 0.1, "lift": 0.5}
+    mesh = gridmorph.Mesh.read(meshes / "mdo_tutorial_000_vol.cgns")
+
+    def design(p):
+        return gridmorph.Motion.read(case, {"lean": p[0], "lift": p[1]})
+
+    plan = gridmorph.Plan(mesh, design([0.1, 0.5]))
+    p = np.array([-0.2, 0.25])
+    u = np.asarray(plan.boundary_displacement_of(design(p)))
+    z = mesh.coordinates[plan.boundary_nodes][:, 2]
+    on_wing = np.abs(u).max(axis=1) > 0
+    assert on_wing.sum() > 100
+    np.testing.assert_allclose(u[on_wing], np.c_[p[0] * z, p[1] * p[0] * z**2, 0 * z][on_wing], atol=1e-14)
+    weights = np.random.default_rng(3).normal(size=u.shape)
+    slopes = plan.parameter_gradient(design, p, 1e-5, weights)
+    expected = (weights[:, 0] * z + weights[:, 1] * p[1] * z**2)[on_wing].sum(), (weights[:, 1] * p[0] * z**2)[on_wing].sum()
+    np.testing.assert_allclose(slopes, expected, rtol=1e-7)
+    with pytest.raises(gridmorph.ConfigError, match="lean is 2, outside its range"):
+        design([2, 0])
+    with pytest.raises(gridmorph.ConfigError, match="'leen' is given a value"):
+        gridmorph.Motion.read(case, {"leen": 1})
+
+
 def test_strides_single_precision_and_out(plan):
     u = plan.boundary_displacement
     expected = plan.displacements(u)
