@@ -8,6 +8,7 @@
 #include <gridmorph/mesh/file_order.hpp>
 #include <gridmorph/mesh/gather_coordinates.hpp>
 #include <gridmorph/mesh/point_ranges.hpp>
+#include <gridmorph/morph/design_modes.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/parameter_gradient.hpp>
@@ -15,6 +16,7 @@
 #include <gridmorph/morph/prediction.hpp>
 #include <gridmorph/motion/inflation_heights.hpp>
 #include <gridmorph/motion/rigid_motion.hpp>
+#include <gridmorph/quality/design_box.hpp>
 #include <gridmorph/quality/indexed_mesh.hpp>
 #include <gridmorph/quality/unstructured_quality.hpp>
 #include <gridmorph/quality/validity.hpp>

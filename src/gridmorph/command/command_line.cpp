@@ -269,7 +269,15 @@ CLI::App* add_view(CLI::App& app, CommandLine& out) {
       ->option_text("x|y|z");
   view->add_option("--wall", out.view.wall, "Wall of the close-ups; the first one met if not given")
       ->option_text("FAMILY");
-  view->add_option("--box", out.view.box, "One more close-up, box.png")->option_text("X0 X1 Y0 Y1");
+  // Through a vector: of an optional array nvcc finds several conversions.
+  view->add_option_function<std::vector<double>>(
+          "--box",
+          [&out](std::vector<double> const& of) {
+            out.view.box = {of[0], of[1], of[2], of[3]};
+          },
+          "One more close-up, box.png")
+      ->expected(4)
+      ->option_text("X0 X1 Y0 Y1");
   view->add_option("--color", out.view.color,
                    "determinant (default for blocks), type (of element; default for elements), displacement, none, or "
                    "a variable of the flow solution")

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/guard/detail/block_cells.hpp>
+#include <gridmorph/quality/detail/block_cells.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
 #include <gridmorph/plan/block_points.hpp>
 
