@@ -3,10 +3,12 @@
 #include <gridmorph/boundary/range_nodes.hpp>
 #include <gridmorph/boundary/selectors.hpp>
 #include <gridmorph/guard/guard.hpp>
+#include <gridmorph/morph/design_modes.hpp>
 #include <gridmorph/morph/morph.hpp>
 #include <gridmorph/morph/morpher.hpp>
 #include <gridmorph/morph/parameter_gradient.hpp>
 #include <gridmorph/morph/plan_share.hpp>
+#include <gridmorph/quality/design_box.hpp>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
@@ -214,6 +216,41 @@ class PyPlan : public PyMorphs {
     return ffd_gradient(*plan_, rule, dJ_db);
   }
 
+  /// motion(p): a Motion for parameters p.
+  [[nodiscard]] nb::dict certify(nb::callable const& motion, std::vector<double> const& low,
+                                 std::vector<double> const& high, double limit) const {
+    auto const rules = [&](std::span<double const> p) {
+      nb::gil_scoped_acquire const held;
+      return nb::cast<PyMotion>(motion(nb::cast(new_numbers(std::vector<double>(p.begin(), p.end()))))).file.motion;
+    };
+    DesignBox found;
+    {
+      Call const call;
+      HostInstance const host;
+      DesignModes const modes = design_modes(*plan_, mesh_->coordinates, rules, low, high);
+      DesignBoxOptions options;
+      options.limit = limit;
+      found = certify_designs(host, IndexedMesh(host, *mesh_), modes, options);
+    }
+    nb::dict out;
+    out["holds"] = found.holds();
+    out["certified"] = found.certified;
+    out["broken"] = found.broken;
+    out["design"] = nb::none();
+    if (!found.design.empty()) {
+      std::vector<double> p;
+      for (std::size_t i = 0; i < low.size(); ++i)
+        p.push_back(0.5 * (low[i] + high[i]) + 0.5 * found.design[i] * (high[i] - low[i]));
+      out["design"] = nb::cast(new_numbers(std::move(p)));
+    }
+    out["worst"] = nb::none();
+    if (found.zone >= 0) out["worst"] = nb::make_tuple(mesh_->zones[found.zone].name, found.cell);
+    out["cells"] = found.cells;
+    out["negative"] = found.negative;
+    out["flat"] = found.flat;
+    return out;
+  }
+
   /// Seconds of displacements() as a C++ program calls it, on arrays of its own: what calls from Python are measured
   /// against.
   [[nodiscard]] std::vector<double> native_times(int repeats) const {
@@ -388,8 +425,19 @@ void bind_morphs(Class& plan) {
       "of velocities().");
 }
 
-/// Binds derivatives by control points.
+/// Binds derivatives by control points, and boxes of designs.
 void bind_gradients(PlanClass& plan) {
+  plan.def(
+      "certify", &PyPlan::certify, nb::arg("motion"), nb::arg("low"), nb::arg("high"), nb::arg("limit") = 1.0,
+      nb::sig("def certify(self, motion: typing.Callable[[numpy.typing.NDArray[numpy.float64]], Motion], low: "
+              "typing.Sequence[float], high: typing.Sequence[float], limit: float = 1.0) -> dict[str, typing.Any]"),
+      "In how much of the box low <= p <= high every mesh of the motions motion(p) is valid, all of them at once.\n\n"
+      "{\"certified\": share of the box about its middle, up to `limit`, in which no cell of any design is inverted "
+      "anywhere; \"holds\": whether that is all of it; \"broken\": the share at which a design is known that breaks a "
+      "cell, inf: none; \"design\": its parameters; \"worst\": (zone, its cell or (element, 0, 0), from 0); \"cells\"; "
+      "\"negative\", \"flat\": cells that are not valid, or without volume, in the middle, and are left out}. Meshes "
+      "have "
+      "to be linear in p, or a ConfigError says where they are not. Cost: 3 k + 17 morphs, and microseconds per cell.");
   plan.def(
       "ffd_gradient",
       [](PyPlan const& p, int rule, Vectors gradient) { return as_array(p.control_point_gradient(rule, gradient)); },

@@ -129,6 +129,9 @@ patches = "wall"
 rule = "formula"
 dx = "lean * z"
 dy = "lift * lean * z^2"
+[boundary_layer]
+walls = "wall"
+mode = "translate"
 """)
     assert gridmorph.Motion.read(case).parameters == {"lean": 0.1, "lift": 0.5}
     mesh = gridmorph.Mesh.read(meshes / "mdo_tutorial_000_vol.cgns")
@@ -147,6 +150,10 @@ dy = "lift * lean * z^2"
     slopes = plan.parameter_gradient(design, p, 1e-5, weights)
     expected = (weights[:, 0] * z + weights[:, 1] * p[1] * z**2)[on_wing].sum(), (weights[:, 1] * p[0] * z**2)[on_wing].sum()
     np.testing.assert_allclose(slopes, expected, rtol=1e-7)
+    box = plan.certify(design, [-0.1, 0.4], [0.1, 0.4], limit=0.5)
+    assert box["cells"] == 24192 and 0 <= box["certified"] <= 0.5 and not box["holds"]
+    with pytest.raises(gridmorph.ConfigError, match="not linear in all parameters together"):
+        plan.certify(design, [-0.1, 0.3], [0.1, 0.5])
     with pytest.raises(gridmorph.ConfigError, match="lean is 2, outside its range"):
         design([2, 0])
     with pytest.raises(gridmorph.ConfigError, match="'leen' is given a value"):

@@ -24,7 +24,7 @@ _gridmorph() {
     -q | --quiet | --json | --dry-run | --optimise | --all | --match | --no-periodic | --ascii | --version | -h | --help) previous="" ;; # nothing follows these
   esac
   case $previous in
-    -t | --threads | --set | -n | --nodes | -e | --elements | -a | --angle | --gap | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces | --plane | --span | --i | --j | --k | --wall | --box | --moved | --dpi) return ;;
+    -t | --threads | --set | --limit | -n | --nodes | -e | --elements | -a | --angle | --gap | --split | --match-tolerance | -p | --patches | -b | --blade | -w | --wall | --radius | --blade-layers | --wall-layers | --run-out | --matching-tolerance | --open-faces | --plane | --span | --i | --j | --k | --wall | --box | --moved | --dpi) return ;;
     -m | --motion) mapfile -t COMPREPLY < <(compgen -W "rotation chord gap all" -- "$current") ;;
     --tip) mapfile -t COMPREPLY < <(compgen -W "none flat squealer groove" -- "$current") ;;
     --axis) mapfile -t COMPREPLY < <(compgen -W "x y z" -- "$current") ;;
@@ -39,7 +39,7 @@ _gridmorph() {
       case $command in
         demo) mapfile -t COMPREPLY < <(compgen -W "passage ball turbine slat coil aircraft" -- "$current") ;;
         keys) mapfile -t COMPREPLY < <(compgen -W "$("$program" keys 2>/dev/null | sed -n 's/^  \([a-z][a-z_0-9]*\)  .*/\1/p')" -- "$current") ;;
-        morph | plan | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
+        morph | plan | certify | wheel) mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.toml' -- "$current") ;;
         *) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
       esac
       ;;

@@ -377,5 +377,68 @@ TEST_F(SequenceRun, WhatIsNoSweepIsRefused) {
   says("morph sweep.toml -o d_{design}.cgns --set shift=1", "outside its range");
 }
 
+/// The blade bends between hub and case, and all else stands; the passage's first cells are thin.
+std::string const bent =
+    "[mesh]\ninput = \"passage.cgns\"\naxis = \"x\"\n"
+    "[parameters]\nbend = { value = 0, range = [-0.01, 0.01], unit = \"m\" }\nlean = { value = 0, range = [-0.01, "
+    "0.01] }\n"
+    "fixed = 1\n"
+    "[[motion]]\npatches = [\"blade\"]\nrule = \"formula\"\nconstants = { q = 167 }\n"
+    "dx = \"fixed * q * max(0, (r - 0.471) * (0.6245 - r)) * lean\"\n"
+    "dz = \"q * max(0, (r - 0.471) * (0.6245 - r)) * (bend + lean * axial / 0.05)\"\n"
+    "[[motion]]\npatches = [\"hub\", \"case\", \"inlet\", \"outlet\", \"type:periodic\"]\nrule = \"fixed\"\n"
+    "[boundary_layer]\nwalls = [\"blade\"]\n";
+
+TEST_F(SequenceRun, ABoxOfDesignsIsCertifiedUpToOneThatIsInverted) {
+  write("box.toml", bent + "mode = \"translate\"\n");
+  Outcome const run = gridmorph("certify box.toml --limit 50 --report box.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("CERTIFIED: "), std::string::npos) << run.out;
+  auto const box = nlohmann::json::parse(contents(path("box.json")));
+  double const certified = box["certified"], broken = box["broken"];
+  EXPECT_TRUE(box["holds"].get<bool>());
+  EXPECT_GT(certified, 0.9 * broken);
+  EXPECT_EQ(box["parameters"]["bend"]["certified"][1], 0.01 * certified);
+  // Corners of the box are valid, and the design that is named is inverted where it says.
+  std::string const unlimited = [&] {
+    std::string text = bent + "mode = \"translate\"\n[guard]\nretry = false\n[volume]\norder = \"priority\"\n";
+    for (auto at = text.find(", range = [-0.01, 0.01]"); at != std::string::npos;
+         at = text.find(", range = [-0.01, 0.01]"))
+      text.erase(at, std::string_view(", range = [-0.01, 0.01]").size());
+    return text;
+  }();
+  write("one.toml", unlimited);
+  auto const morph = [&](double bend, double lean) {
+    return gridmorph(fmt::format("morph one.toml -o one.cgns --set bend={:.17g} --set lean={:.17g}", bend, lean));
+  };
+  for (double const s : {-1.0, 1.0})
+    for (double const t : {-1.0, 1.0})
+      EXPECT_LE(morph(s * 0.01 * certified, t * 0.01 * certified).status, 1) << s << " " << t;
+  Outcome const inverted = morph(box["design"]["bend"], box["design"]["lean"]);
+  EXPECT_EQ(inverted.status, 4) << inverted.out;
+  EXPECT_NE((inverted.out + inverted.err).find(box["worst"]["zone"].get<std::string>()), std::string::npos);
+  // A box that is too large is certified in part.
+  EXPECT_EQ(gridmorph("certify box.toml").status, 0);
+  std::string wide = bent + "mode = \"translate\"\n";
+  for (auto at = wide.find("0.01]"); at != std::string::npos; at = wide.find("0.01]")) wide.replace(at, 5, "0.9]");
+  for (auto at = wide.find("[-0.01"); at != std::string::npos; at = wide.find("[-0.01")) wide.replace(at, 6, "[-0.9");
+  write("wide.toml", wide);
+  Outcome const part = gridmorph("certify wide.toml");
+  EXPECT_EQ(part.status, 1) << part.err;
+  EXPECT_NE(part.out.find("CERTIFIED IN PART"), std::string::npos) << part.out;
+}
+
+TEST_F(SequenceRun, BoxesThatCannotBeCertifiedSayWhy) {
+  write("turning.toml", bent + "mode = \"rotate\"\nextent = { layers = 4 }\n");
+  Outcome const turning = gridmorph("certify turning.toml");
+  EXPECT_EQ(turning.status, 2);
+  EXPECT_NE(turning.err.find("meshes are not linear in parameter 1"), std::string::npos) << turning.err;
+  EXPECT_NE(turning.err.find("1 bend, 2 lean"), std::string::npos) << turning.err;
+  write("none.toml", "[mesh]\ninput = \"passage.cgns\"\n" + still);
+  Outcome const none = gridmorph("certify none.toml");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("no parameter has a range"), std::string::npos) << none.err;
+}
+
 }  // namespace
 }  // namespace gridmorph::test

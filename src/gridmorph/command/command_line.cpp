@@ -21,8 +21,8 @@ namespace gridmorph::cli {
 
 namespace {
 
-std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "quality", "wheel", "fillet",
-                                             "blocks", "hexahedra", "surface", "view",    "keys",  "demo"};
+std::vector<std::string> const command_names{"morph",  "inspect",   "plan",    "certify", "quality", "wheel", "fillet",
+                                             "blocks", "hexahedra", "surface", "view",    "keys",    "demo"};
 
 constexpr char const* exit_statuses =
     "Exit status: 0 done; 1 written, but the mesh falls short of the thresholds; 2 bad input; 3 failure of the "
@@ -411,6 +411,13 @@ std::variant<CommandLine, Stop> parse_command_line(int argc, char const* const* 
                  "List every chain; otherwise, where there are more than 60, an overview and the first of each stage");
   plan->add_option("--graph", out.graph, "Draw blocks, interfaces and chains: NAME.svg, or NAME.dot for Graphviz");
   commands.emplace_back(plan, Command::plan);
+  auto* certify = app.add_subcommand("certify", "Show in how much of the ranges of [parameters] every design is valid");
+  certify->add_option("case", out.input, "Case file (TOML) with ranges in [parameters]")->required();
+  add_parameters(*certify, out);
+  certify->add_option("--limit", out.limit, "Look at boxes up to so many times the ranges (default 1)")
+      ->check(CLI::Range(1e-3, 1e3));
+  certify->add_option("-r,--report", out.report, "Report (JSON)");
+  commands.emplace_back(certify, Command::certify);
   auto* quality = app.add_subcommand("quality", "Measure one mesh, or compare a morphed mesh with its baseline");
   quality->add_option("mesh", out.input, "Mesh, or the baseline (CGNS, PLOT3D, SU2, OpenFOAM, Gmsh, VTK or UGRID)")
       ->required();

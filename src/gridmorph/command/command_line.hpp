@@ -15,7 +15,21 @@
 namespace gridmorph::cli {
 
 struct CommandLine {
-  enum class Command { morph, inspect, plan, quality, wheel, fillet, blocks, hexahedra, surface, view, keys, demo };
+  enum class Command {
+    morph,
+    inspect,
+    plan,
+    certify,
+    quality,
+    wheel,
+    fillet,
+    blocks,
+    hexahedra,
+    surface,
+    view,
+    keys,
+    demo
+  };
   Command command = Command::morph;
   bool quiet = false;
   int threads = 0;  ///< 0: what OMP_NUM_THREADS or the machine says
@@ -30,6 +44,7 @@ struct CommandLine {
   std::optional<std::filesystem::path> page;    ///< morph, wheel: the report as a page, instead of the case file's
   std::optional<double> fraction;               ///< morph: of the motion
   ParameterValues parameters;                   ///< morph, plan, wheel: in place of the case file's
+  std::optional<double> limit;                  ///< certify: of the ranges
   bool dry_run = false;
   bool all = false;                            ///< plan: every chain of however many
   bool optimise = false;                       ///< plan: order of chains by prediction

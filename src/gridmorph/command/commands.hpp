@@ -14,6 +14,7 @@ void set_quality(CaseFile& case_file, std::optional<std::string> const& mode);
 int run_morph_command(CommandLine const& options, Terminal& terminal);
 int run_inspect_command(CommandLine const& options, Terminal& terminal);
 int run_plan_command(CommandLine const& options, Terminal& terminal);
+int run_certify_command(CommandLine const& options, Terminal& terminal);
 int run_quality_command(CommandLine const& options, Terminal& terminal);
 int run_wheel_command(CommandLine const& options, Terminal& terminal);
 int run_surface_command(CommandLine const& options, Terminal& terminal);

@@ -32,6 +32,8 @@ constexpr std::array topics{
           "formats.md (CGNS, PLOT3D and SU2 files, side files)"},
     Topic{"plan", "  gridmorph plan case.toml\n  gridmorph plan case.toml --graph plan.svg\n",
           "method.md (stages and chains), unstructured.md"},
+    Topic{"certify", "  gridmorph certify case.toml\n  gridmorph certify case.toml --limit 4 --report box.json\n",
+          "quality.md#a-box-of-designs, case_file.md#parameters"},
     Topic{"quality",
           "  gridmorph quality wing.cgns wing_morphed.cgns\n"
           "  gridmorph quality cascade.su2 --json\n",

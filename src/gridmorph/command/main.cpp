@@ -41,6 +41,7 @@ int run(CommandLine const& options, Terminal& terminal) {
     case Command::morph: return run_morph_command(options, terminal);
     case Command::inspect: return run_inspect_command(options, terminal);
     case Command::plan: return run_plan_command(options, terminal);
+    case Command::certify: return run_certify_command(options, terminal);
     case Command::quality: return run_quality_command(options, terminal);
     case Command::wheel: return run_wheel_command(options, terminal);
     case Command::fillet: return run_fillet_command(options, terminal);
@@ -56,7 +57,8 @@ int run(CommandLine const& options, Terminal& terminal) {
 
 bool names_case_file(CommandLine const& options) {
   using Command = CommandLine::Command;
-  return options.command == Command::morph || options.command == Command::plan || options.command == Command::wheel;
+  return options.command == Command::morph || options.command == Command::plan || options.command == Command::wheel ||
+         options.command == Command::certify;
 }
 
 /// The exit status of work that prints through the terminal; errors become messages.

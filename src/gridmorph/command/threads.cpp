@@ -38,6 +38,7 @@ std::optional<std::uintmax_t> bytes_of_mesh(CommandLine const& options) {
                                          : bytes_per_node * std::uintmax_t(options.demo_nodes.value_or(200'000));
     case Command::morph:
     case Command::plan:
+    case Command::certify:
     case Command::wheel: mesh = options.case_document ? options.case_document->mesh() : std::nullopt; break;
     case Command::inspect:
     case Command::quality:

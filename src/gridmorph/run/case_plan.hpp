@@ -80,6 +80,7 @@ class CasePlan {
   /// A line or two above the results of a morph of elements; empty of blocks.
   [[nodiscard]] std::string headline() const;
   [[nodiscard]] MeshForMessages for_messages() const;
+  [[nodiscard]] MorphPlan const& morph_plan() const { return plan_; }
   /// The rules on the boundary; numbers of nodes and of the patches of the file are those of the mesh.
   [[nodiscard]] BoundaryMotion const& rules() const { return plan_.rules(); }
   [[nodiscard]] NearCells const& near() const { return near_; }

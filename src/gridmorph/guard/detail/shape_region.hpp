@@ -2,9 +2,9 @@
 #pragma once
 
 #include <gridmorph/core/host_instance.hpp>
-#include <gridmorph/quality/detail/block_cells.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
 #include <gridmorph/plan/block_points.hpp>
+#include <gridmorph/quality/detail/block_cells.hpp>
 
 #include <array>
 #include <span>
