@@ -247,16 +247,37 @@ TEST(DesignBox, HoldsForBlocksAndElements) {
   }
 }
 
-TEST(DesignBox, LeavesOutCellsThatAreInvertedAtItsCentre) {
-  IndexedMesh const mesh(block(5, 0.2));
-  DesignModes designs{zeros(mesh.n_nodes()), smooth_modes(mesh.mesh().coordinates, 2, 0.01), 0};
-  for (Index n = 0; n < mesh.n_nodes(); ++n) designs.centre.set(n, mesh.mesh().coordinates[n]);
-  Index const corner = mesh.mesh().zones[0].node({2, 2, 2});
-  designs.centre.set(corner, designs.centre[corner] + Vec3{0.6, 0.6, 0});
-  DesignBox const box = certify_designs({}, mesh, designs);
+/// A node in the middle of the block moved beyond its neighbours.
+Coordinates with_inverted_cells(Mesh const& mesh) {
+  Coordinates x = moved(mesh, [](Vec3 const& p) { return p; });
+  Index const node = mesh.zones[0].node({2, 2, 2});
+  x.set(node, x[node] + Vec3{0.6, 0.6, 0});
+  return x;
+}
+
+TEST(DesignBox, LeavesOutCellsThatAreInvertedInTheMesh) {
+  Mesh mesh = block(5, 0.2);
+  mesh.coordinates = with_inverted_cells(mesh);
+  IndexedMesh const indexed(mesh);
+  DesignModes const designs{mesh.coordinates, smooth_modes(mesh.coordinates, 2, 0.01), 0};
+  DesignBox const box = certify_designs({}, indexed, designs);
   EXPECT_GT(box.negative, 0);
   EXPECT_LT(box.negative, 9);
   EXPECT_EQ(box.certified, 1);
+  expect_true(indexed, designs, box, 20);
+}
+
+TEST(DesignBox, WhoseCentreBreaksASoundCellHasNothingThatHolds) {
+  IndexedMesh const mesh(block(5, 0.2));
+  DesignModes const designs{with_inverted_cells(mesh.mesh()), smooth_modes(mesh.mesh().coordinates, 2, 0.01), 0};
+  DesignBox const box = certify_designs({}, mesh, designs);
+  EXPECT_FALSE(certify(mesh, designs.centre).holds());
+  EXPECT_FALSE(box.holds());
+  EXPECT_EQ(box.certified, 0);
+  EXPECT_EQ(box.broken, 0);
+  EXPECT_EQ(box.design, std::vector<double>(2, 0));
+  EXPECT_GE(box.zone, 0);
+  EXPECT_EQ(box.negative, 0);
 }
 
 TEST(DesignBox, SaysWhatItCannotTake) {

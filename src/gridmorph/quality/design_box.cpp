@@ -43,6 +43,7 @@ class Cells {
     return blocks_ ? mesh_.handedness()[std::size_t(blocks_->zone(c))] : mesh_.signs()[std::size_t(c)];
   }
   [[nodiscard]] Vec3 const& normal() const { return normal_; }
+  [[nodiscard]] Coordinates const& coordinates() const { return mesh_.mesh().coordinates; }
   [[nodiscard]] detail::CellPlace place(Index c) const {
     return blocks_ ? detail::place_of_cell(mesh_.mesh(), c) : detail::place_of_element(mesh_.mesh(), c);
   }
@@ -116,6 +117,14 @@ class Certifier {
     for (Coordinates const& mode : designs_.modes) out.modes.push_back(corners_of(nodes, n_corners(type), mode));
     return out;
   }
+  /// The sign that a cell has in the mesh itself, whose handedness and numbering signs are.
+  [[nodiscard]] JacobianSign sign_in_mesh(Index c) const {
+    Index nodes[kernels::max_corners];
+    cells_.nodes(c, nodes);
+    kernels::ElementType const type = cells_.type(c);
+    return kernels::jacobian_sign(type, corners_of(nodes, n_corners(type), cells_.coordinates()), cells_.sign(c),
+                                  cells_.normal());
+  }
   [[nodiscard]] std::vector<double> at_centre() const { return std::vector<double>(designs_.modes.size(), 0); }
 
   /// The size up to which norms, and where these do not reach `enough` slopes, show a cell to be valid.
@@ -179,14 +188,20 @@ class Certifier {
     double const enough = in_question();
     std::vector<Index> const open = open_cells(enough);
     out_.by_slopes = Index(open.size());
-    std::vector<std::uint8_t> sign(open.size(), 0);
+    std::vector<JacobianSign> sign(open.size(), JacobianSign::positive), before = sign;
     detail::for_all(host_, "gridmorph::certify_designs::slopes", Index(open.size()), [&](Index k) {
       scale_[open[k]] = screened(open[k], enough);
-      if (scale_[open[k]] == 0) sign[k] = std::uint8_t(cell(open[k]).sign_at(at_centre()));
+      if (scale_[open[k]] != 0) return;
+      sign[k] = cell(open[k]).sign_at(at_centre());
+      before[k] = sign_in_mesh(open[k]);
     });
     for (std::size_t k = 0; k < open.size(); ++k) {
-      if (sign[k] == std::uint8_t(JacobianSign::positive)) continue;
-      (sign[k] == std::uint8_t(JacobianSign::zero) ? out_.flat : out_.negative) += 1;
+      // A cell that is sound in the mesh and not at the centre is what the box is asked about: broken there.
+      if (before[k] == JacobianSign::positive) {
+        if (sign[k] >= JacobianSign::negative) take(open[k], {0, at_centre()});
+        continue;
+      }
+      (before[k] == JacobianSign::zero ? out_.flat : out_.negative) += 1;
       scale_[open[k]] = kernels::unbounded;
     }
   }

@@ -32,9 +32,10 @@ struct DesignBox {
   /// The cell that it breaks; where there is none the cell that limits `certified`, if any does.
   int zone = -1;
   Index3 cell{0, 0, 0};
-  Index cells = 0;      ///< that were looked at
-  Index negative = 0;   ///< of these: not valid at the centre, and left out
-  Index flat = 0;       ///< of these: without volume at the centre, and left out
+  Index cells = 0;  ///< that were looked at
+  /// Of these: not valid, or without volume, in the mesh itself, and left out where they are not at the centre. Cells
+  /// that are sound in the mesh and not at the centre are broken there: `certified` and `broken` are 0.
+  Index negative = 0, flat = 0;
   Index by_slopes = 0;  ///< that norms alone did not show to be valid
   Index searched = 0;   ///< of which slopes neither did
 

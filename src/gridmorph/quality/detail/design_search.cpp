@@ -153,12 +153,11 @@ class PieceBounds {
       if ((live_ >> c & 1u) != 0) use(c);
   }
 
-  /// What slopes change by over the piece, how much coefficients sag, and what parameters do that are not set yet.
+  /// What slopes change by over the piece, and how far coefficients may lie below what they are in a branch.
   void bound_slopes(FactorSizes const& size, FactorSizes const& most) {
     FactorSizes const all = sum(size, most);
     std::vector<double> influence(n_, 0), change(n_, 0);
     sag_.assign(n_, Coefficients{});
-    sags_ = Coefficients{};
     for (int i = 0; i < n_; ++i) {
       JacobianFactors sizes;
       kernels::add_sizes<type>(modes_[i], sizes);
@@ -167,7 +166,7 @@ class PieceBounds {
       change[i] = kernels::first_order(all, own) - kernels::first_order(size, own);
       Coefficients bends{};
       bool bends_known = false;
-      double const rest = std::max(0.0, first_order_of_two(own, most));
+      double const rest = kernels::first_order(own, most);
       for_each_live([&](int c) {
         double const slope = std::abs(slope_[i].of[c]);
         influence[i] = std::max(influence[i], slope);
@@ -178,25 +177,27 @@ class PieceBounds {
         if (!(bend > 0) || least >= 2 * bend) return;
         double const beyond = 1 - least / (2 * bend);
         sag_[i].of[c] = bend * beyond * beyond;
-        sags_.of[c] += sag_[i].of[c];
       });
     }
     order_.resize(n_);
     std::iota(order_.begin(), order_.end(), 0);
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return influence[a] > influence[b]; });
-    rest_.assign(n_ + 1, Coefficients{});
-    for (int d = n_ - 1; d >= 0; --d)
-      for (int c = 0; c < table.n_coefficients; ++c)
-        rest_[d].of[c] = rest_[d + 1].of[c] + std::abs(slope_[order_[d]].of[c]) + change[order_[d]];
+    // Between the corners of a branch b is less by what parameters can do that are not set yet, and by what it sags
+    // along those that are.
+    below_.assign(n_ + 1, Coefficients{});
+    for (int c = 0; c < table.n_coefficients; ++c) {
+      for (int d = n_ - 1; d >= 0; --d)
+        below_[d].of[c] = below_[d + 1].of[c] + std::abs(slope_[order_[d]].of[c]) + change[order_[d]];
+      double sags = 0;
+      for (int d = 0; d < n_; ++d) {
+        sags += sag_[order_[d]].of[c];
+        below_[d + 1].of[c] += sags;
+      }
+    }
   }
   static FactorSizes sum(FactorSizes const& a, FactorSizes const& b) {
     return {{a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2]}};
   }
-  /// Two factors of `own` and one of f, three of `own` among them.
-  static double first_order_of_two(FactorSizes const& own, FactorSizes const& f) {
-    return kernels::first_order(own, f);
-  }
-
   DesignAnswer::Kind branch(int depth, JacobianFactors const& e) {
     if (left_-- == 0) {
       failed_ = -1;
@@ -207,7 +208,7 @@ class PieceBounds {
     double least = 0;
     bool negative = false;
     for_each_live([&](int c) {
-      double const above = b.of[c] - rest_[depth].of[c] - sags_.of[c] - margin_;
+      double const above = b.of[c] - below_[depth].of[c] - margin_;
       if (!(above > 0) && (worst < 0 || above < least)) {
         worst = c;
         least = above;
@@ -242,8 +243,8 @@ class PieceBounds {
   std::vector<JacobianFactors> modes_;  ///< times the half widths
   std::uint32_t live_ = 0;
   double margin_ = 0, value_ = 0;
-  Coefficients at_centre_{}, sags_{};
-  std::vector<Coefficients> slope_, sag_, rest_;  ///< rest_[d]: of the parameters that are set after d others
+  Coefficients at_centre_{};
+  std::vector<Coefficients> slope_, sag_, below_;  ///< below_[d]: where d parameters are set
   std::vector<int> order_;
   std::vector<signed char> signs_;
   bool valid_ = false;
