@@ -435,7 +435,7 @@ void bind_gradients(PlanClass& plan) {
       "{\"certified\": share of the box about its middle, up to `limit`, in which no cell of any design is inverted "
       "anywhere; \"holds\": whether that is all of it; \"broken\": the share at which a design is known that breaks a "
       "cell, inf: none; \"design\": its parameters; \"worst\": (zone, its cell or (element, 0, 0), from 0); \"cells\"; "
-      "\"negative\", \"flat\": cells that are not valid, or without volume, in the middle, and are left out}. Meshes "
+      "\"negative\", \"flat\": cells that are not valid, or without volume, in the mesh itself, and are left out}. Meshes "
       "have "
       "to be linear in p, or a ConfigError says where they are not. Cost: 3 k + 17 morphs, and microseconds per cell.");
   plan.def(

@@ -121,7 +121,7 @@ std::string box_text(Ranges const& box, Mesh const& mesh, DesignBox const& found
     text += fmt::format("beyond: no design is known that turns a cell inside out; {} could not be decided\n",
                         place_text(mesh, found));
   if (found.negative + found.flat > 0)
-    text += fmt::format("left out: {} {} that are inside out in the middle of the box, {} without volume there\n",
+    text += fmt::format("left out: {} {} that are inside out in the mesh itself, {} without volume there\n",
                         found.negative, cells, found.flat);
   return text + fmt::format("looked at: {} {} by norms, {} by slopes too, {} by parts of the box\n", found.cells, cells,
                             found.by_slopes, found.searched);
