@@ -1,6 +1,7 @@
 // Boxes of designs: certified ones have no design that the certificate finds broken, and the design that is named does
 // break its cell.
 #include "quality/test_meshes.hpp"
+#include "support/unstructured_meshes.hpp"
 
 #include <gridmorph/kernels/jacobian_bounds.hpp>
 #include <gridmorph/mesh/as_hexahedra.hpp>
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -245,6 +247,114 @@ TEST(DesignBox, HoldsForBlocksAndElements) {
       }
     }
   }
+}
+
+/// Boxes of random modes, smooth ones and one that moves each node by itself, of `size` times the given vector.
+void expect_true_of(Mesh const& mesh, Vec3 const& size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> off(-1, 1);
+  IndexedMesh const indexed(mesh);
+  DesignModes designs{mesh.coordinates, {}, 0};
+  for (int i = 0; i < 4; ++i) {
+    Vec3 const a{off(random), off(random), off(random)}, b{3 * off(random), 3 * off(random), 3 * off(random)};
+    designs.modes.push_back(moved(mesh, [&](Vec3 const& p) {
+      double const w = i == 3 ? 0.2 : std::sin(dot(b, p) + i);
+      Vec3 const v = i == 3 ? Vec3{off(random), off(random), off(random)} : a;
+      return w * Vec3{size.x * v.x, size.y * v.y, size.z * v.z};
+    }));
+  }
+  DesignBoxOptions options;
+  options.limit = 8;
+  DesignBox const box = certify_designs({}, indexed, designs, options);
+  EXPECT_EQ(box.negative, 0);
+  EXPECT_LT(box.broken, options.limit);
+  EXPECT_GT(box.certified, 0.9 * box.broken);
+  expect_true(indexed, designs, box, 200);
+  // A box half as wide is certified for twice as much of it.
+  for (Coordinates& mode : designs.modes)
+    for (Index n = 0; n < mode.size(); ++n) mode.set(n, 0.5 * mode[n]);
+  options.limit = 16;
+  DesignBox const half = certify_designs({}, indexed, designs, options);
+  EXPECT_DOUBLE_EQ(half.broken, 2 * box.broken);
+  EXPECT_DOUBLE_EQ(half.certified, 2 * box.certified);
+  EXPECT_EQ(half.cell, box.cell);
+}
+
+TEST(DesignBox, HoldsForElementsOfAllKinds) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    expect_true_of(unit_box({3, 3, 4}), {1, 1, 1}, seed);
+    expect_true_of(to_prisms_and_tetrahedra(one_zone({4, 5, 5},
+                                                     [](Index3 const& i) {
+                                                       return wavy({0.3 * i[0], 0.2 * i[1], 0.25 * i[2]}, 0.02);
+                                                     }),
+                                            2),
+                   {1, 1, 1}, seed);
+    expect_true_of(flat_box(5, 6, 3), {1, 1, 0}, seed);
+  }
+}
+
+TEST(DesignBox, HoldsForPyramids) {
+  // A cube as six pyramids around its centre.
+  ElementCorners const cube = regular(ElementType::hexahedron);
+  Mesh pyramids;
+  pyramids.source = "pyramids";
+  pyramids.add_zone("only", 9);
+  pyramids.coordinates = Coordinates(9);
+  for (int k = 0; k < 8; ++k) pyramids.coordinates.set(k, cube.at[k]);
+  pyramids.coordinates.set(8, {0.5, 0.5, 0.5});
+  for (int f = 0; f < 6; ++f) {
+    auto const corner = [&](int k) { return Index32(face_corner(ElementType::hexahedron, f, k)); };
+    pyramids.add_element(ElementType::pyramid, std::array{corner(3), corner(2), corner(1), corner(0), Index32(8)});
+  }
+  for (unsigned seed = 1; seed <= 5; ++seed) expect_true_of(pyramids, {1, 1, 1}, seed);
+}
+
+TEST(DesignBox, HoldsForLeftHandedZones) {
+  for (unsigned seed = 1; seed <= 3; ++seed) expect_true_of(two_handed_zones(), {1, 1, 1}, seed);
+}
+
+TEST(DesignBox, HoldsFarFromTheOriginAndForThinCells) {
+  for (double const h : {1e-2, 1e-5}) {
+    Mesh mesh = block(6, h);
+    mesh.coordinates = moved(mesh, [](Vec3 const& p) {
+      return Vec3{p.x + 300, p.y - 500, p.z + 0.1 * std::sin(3 * p.x)};
+    });
+    // Nodes by themselves move by the height of the first cells.
+    expect_true_of(mesh, {1, 1, h}, 7);
+  }
+}
+
+TEST(DesignBox, LeavesEdgesThatStayCollapsedAlone) {
+  // A wedge around the z axis, whose cells there have no edge along j.
+  IndexedMesh const mesh(one_zone({4, 4, 3}, [](Index3 const& i) {
+    double const r = 0.3 * i[0], a = 0.2 * i[1];
+    return Vec3{r * std::cos(a), r * std::sin(a), 0.4 * i[2]};
+  }));
+  Coordinates const& x = mesh.mesh().coordinates;
+  DesignModes const designs{x, smooth_modes(x, 3, 0.1), 0};
+  DesignBoxOptions options;
+  options.limit = 20;
+  DesignBox const box = certify_designs({}, mesh, designs, options);
+  EXPECT_EQ(box.flat, 0);
+  EXPECT_GT(box.certified, 0.9 * std::min(box.broken, 20.0));
+  expect_true(mesh, designs, box, 200);
+}
+
+TEST(DesignBox, OfModesThatAreNoNumbersHoldsNothing) {
+  IndexedMesh const mesh(block(4, 0.2));
+  DesignModes designs{mesh.mesh().coordinates, {zeros(mesh.n_nodes())}, 0};
+  designs.modes[0].set(5, {std::nan(""), 0, 0});
+  EXPECT_EQ(certify_designs({}, mesh, designs).certified, 0);
+}
+
+TEST(DesignBox, OfManyParametersIsCertifiedToo) {
+  IndexedMesh const mesh(block(5, 1e-3));
+  DesignModes const designs{mesh.mesh().coordinates, smooth_modes(mesh.mesh().coordinates, 24, 0.05), 0};
+  DesignBoxOptions options;
+  options.limit = 5;
+  DesignBox const box = certify_designs({}, mesh, designs, options);
+  EXPECT_GT(box.certified, 0.8 * std::min(5.0, box.broken));
+  expect_true(mesh, designs, box, 200);
 }
 
 /// A node in the middle of the block moved beyond its neighbours.

@@ -222,16 +222,19 @@ KOKKOS_INLINE_FUNCTION void add_sizes(JacobianFactors const& f, JacobianFactors&
       sizes.of[kind][n] += {absolute(v.x), absolute(v.y), absolute(v.z)};
     }
 }
-/// The largest of each kind.
+/// The largest of each kind; no numbers where one of them is none, which comparisons would pass over.
 template <ElementType type>
 KOKKOS_INLINE_FUNCTION FactorSizes largest_sizes(JacobianFactors const& sizes) {
   constexpr ProductTable t = product_table(type);
   FactorSizes out;
+  double sum = 0;
   for (int kind = 0; kind < 3; ++kind)
     for (int n = 0; n < t.count[kind]; ++n) {
       Vec3 const& v = sizes.of[kind][n];
       out.of[kind] = {larger(out.of[kind].x, v.x), larger(out.of[kind].y, v.y), larger(out.of[kind].z, v.z)};
+      sum += v.x + v.y + v.z;
     }
+  for (Vec3& v : out.of) v = v + Vec3{sum - sum, sum - sum, sum - sum};
   return out;
 }
 

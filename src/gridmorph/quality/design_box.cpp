@@ -2,8 +2,8 @@
 #include <gridmorph/core/for_all.hpp>
 #include <gridmorph/kernels/curved_element.hpp>
 #include <gridmorph/mesh/unstructured_mesh.hpp>
+#include <gridmorph/quality/block_cells.hpp>
 #include <gridmorph/quality/design_box.hpp>
-#include <gridmorph/quality/detail/block_cells.hpp>
 #include <gridmorph/quality/detail/design_search.hpp>
 #include <gridmorph/quality/detail/partial_sums.hpp>
 

@@ -4,7 +4,7 @@
 #include <gridmorph/core/host_instance.hpp>
 #include <gridmorph/kernels/relative_shape.hpp>
 #include <gridmorph/plan/block_points.hpp>
-#include <gridmorph/quality/detail/block_cells.hpp>
+#include <gridmorph/quality/block_cells.hpp>
 
 #include <array>
 #include <span>

@@ -1,4 +1,4 @@
-// Cells of a mesh of blocks, by number and around nodes.
+// Cells of a mesh of blocks, by number and around nodes. Internal.
 #pragma once
 
 #include <gridmorph/mesh/mesh.hpp>
