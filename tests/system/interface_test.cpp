@@ -11,8 +11,8 @@
 namespace gridmorph::test {
 namespace {
 
-std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "quality", "wheel", "fillet",
-                                        "blocks", "hexahedra", "surface", "view",    "keys",  "demo"};
+std::vector<std::string> const commands{"morph",  "inspect",   "plan",    "certify", "quality", "wheel", "fillet",
+                                        "blocks", "hexahedra", "surface", "view",    "keys",    "demo"};
 
 class CommandInterface : public CommandTest {
  protected:
